@@ -13,22 +13,23 @@ typedef struct Reference {
     double (*points)[3];
 } Reference;
 
-static void find_rows(Reference *ref, const Case *c, const double *x)
+static void find_rows(Reference *ref, const Case *c, Trajectory *t)
 {
     double q[3];
     ref->rows = mem_alloc((size_t)c->objective_count, sizeof(Objective *));
     for (int k = 0; k < c->objective_count; k++)
-        if (objective_point(&c->objectives[k], x, q)) ref->rows[ref->count++] = &c->objectives[k];
+        if (objective_point(&c->objectives[k], trajectory_frame(t, 0).x, trajectory_params(t, 0), q))
+            ref->rows[ref->count++] = &c->objectives[k];
 }
 
 /* The way of row k's point: that of an earlier row, if it is the same. */
-static void follow(Reference *ref, const Trajectory *t, int k)
+static void follow(Reference *ref, Trajectory *t, int k)
 {
     size_t numbers = 3 * (size_t)ref->frames, known = (size_t)ref->followed_count;
     ref->followed = mem_resize(ref->followed, known * numbers, (known + 1) * numbers, sizeof(double));
     double *way = ref->followed + known * numbers;
     for (int n = 0; n < ref->frames; n++)
-        objective_point(ref->rows[k], trajectory_frame(t, n).x, way + 3 * n);
+        objective_point(ref->rows[k], trajectory_frame(t, n).x, trajectory_params(t, n), way + 3 * n);
     int point = 0;
     while (memcmp(ref->followed + (size_t)point * numbers, way, numbers * sizeof *way)) point++;
     if (point == ref->followed_count) ref->followed_count++;
@@ -47,7 +48,7 @@ static void add_points(Reference *ref, int k)
 }
 
 /* What each row is, at which frames it counts, and how far its point is away. */
-static void add_rows(const Reference *ref, const Trajectory *t, Arrays *list)
+static void add_rows(const Reference *ref, Trajectory *t, Arrays *list)
 {
     char *names = mem_text("");
     int *frames = arrays_keep(list, mem_alloc(2 * (size_t)ref->count, sizeof *frames));
@@ -56,17 +57,18 @@ static void add_rows(const Reference *ref, const Trajectory *t, Arrays *list)
         names = mem_join(names, ref->rows[k]->ops->name, "\n");
         frames[2 * k] = ref->rows[k]->first, frames[2 * k + 1] = ref->rows[k]->last;
         for (int n = 0; n < ref->frames; n++)
-            distance[k * ref->frames + n] = objective_distance(ref->rows[k], trajectory_frame(t, n).x);
+            distance[k * ref->frames + n] =
+                objective_distance(ref->rows[k], trajectory_frame(t, n).x, trajectory_params(t, n));
     }
     arrays_add(list, array_text("trajectory/reference/names", arrays_keep(list, names)));
     arrays_add(list, array_int("trajectory/reference/frames", frames, 2, ref->count, 2));
     arrays_add(list, array_float("trajectory/reference/distance", "m", distance, 2, ref->count, ref->frames));
 }
 
-void reference_add(const Case *c, const Trajectory *t, int steps, Arrays *list)
+void reference_add(const Case *c, Trajectory *t, int steps, Arrays *list)
 {
     Reference ref = {.frames = steps + 1};
-    find_rows(&ref, c, trajectory_frame(t, 0).x);
+    find_rows(&ref, c, t);
     ref.follows = arrays_keep(list, mem_alloc((size_t)ref.count, sizeof(int)));
     ref.offsets = arrays_keep(list, mem_alloc((size_t)ref.count + 1, sizeof(int)));
     for (int k = 0; k < ref.count; k++) {

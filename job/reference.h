@@ -7,4 +7,4 @@
 
 /* trajectory/followed: the points; trajectory/reference/..: a row for each waypoint and curve of the case. Nothing where it has
  * none. Of the best motion, at the start and after each step. */
-void reference_add(const Case *c, const Trajectory *t, int steps, Arrays *list);
+void reference_add(const Case *c, Trajectory *t, int steps, Arrays *list);

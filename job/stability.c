@@ -21,11 +21,10 @@ static void add_modes(const Model *model, const char *name, const double *vector
 /* Of every position the lumped mass of its point; NULL: some have none, and there are no frequencies. */
 static double *position_masses(const Model *model, const double *p, Arrays *list)
 {
-    const BodyOps *body = model->body->ops;
     int points = model->point_count;
-    if (!body->masses) return NULL;
+    if (!model->body->ops->masses) return NULL;
     double *mass = arrays_numbers(list, (size_t)points), *M = arrays_numbers(list, 3 * (size_t)points);
-    body->masses(model, p, mass);
+    model_masses(model, p, mass);
     for (int i = 0; i < 3 * points; i++) {
         M[i] = mass[i / 3];
         if (!(M[i] > 0)) return NULL;

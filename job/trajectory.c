@@ -206,7 +206,8 @@ static void add_distances(const TrajectoryJob *job, Arrays *list)
     for (int k = 0; k < rows; k++) {
         const Objective *row = &job->c->objectives[k];
         for (int n = row->first; n <= row->last; n++) {
-            double distance = objective_distance(row, trajectory_frame(job->t, n).x);
+            double distance =
+                objective_distance(row, trajectory_frame(job->t, n).x, trajectory_params(job->t, n));
             largest[k] = n == row->first ? distance : fmax(largest[k], distance);
         }
         if (isnan(largest[k])) continue;

@@ -92,7 +92,7 @@ static double largest_young(const Model *model, const double *p)
 static double largest_mass(const Model *model, const double *p)
 {
     double *mass = mem_alloc((size_t)model->point_count, sizeof *mass), largest = 0;
-    model->body->ops->masses(model, p, mass);
+    model_masses(model, p, mass);
     for (int v = 0; v < model->point_count; v++) largest = fmax(largest, mass[v]);
     mem_free(mass);
     return largest;

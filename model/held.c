@@ -164,6 +164,13 @@ void model_places(const Model *model, const double *x, double *place)
     memcpy(place, x, 3 * (size_t)model->point_count * sizeof *place);
 }
 
+void model_masses(const Model *model, const double *p, double *mass)
+{
+    Masses masses = model->body->ops->masses(model);
+    masses_all(&masses, p, mass);
+    masses_clear(&masses);
+}
+
 void model_supports(const Model *model, const Snapshot *shot, double *force)
 {
     model_held_forces(model, shot, 0, force);
@@ -177,7 +184,7 @@ bool model_start_cases(Model *model, const Build *b, const bool *fixed)
     const World *world = model->world;
     int load = params_find(model->params, "load")->offset;
     double *mass = mem_alloc((size_t)model->point_count, sizeof *mass);
-    ops->masses(model, model->cases[0].stages[0].p, mass);
+    model_masses(model, model->cases[0].stages[0].p, mass);
     bool ok = true, borne = world && (world->obstacle_count || world->self);
     for (int k = 0; ok && k < model->case_count; k++) {
         Case *c = &model->cases[k];

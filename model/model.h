@@ -136,6 +136,9 @@ bool model_check_world(Model *model, YamlFile *file);
 /* What of a trajectory changes in time as an unknown; how many. */
 int model_controls(const Model *model, Control controls[2]);
 
+/* Of all points of a body that tells its masses (BodyOps.masses), with those numbers; mass[point_count], kg. */
+void model_masses(const Model *model, const double *p, double *mass);
+
 /* A flux density, model->flux[number], into p. */
 void model_put_flux(const Model *model, int number, double *p);
 

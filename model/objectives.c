@@ -20,22 +20,11 @@ static bool height_objective(const Model *model, const Build *b, Key at, const O
 
 /* ---- Points ---- */
 
-/* Its weights do not follow an unknown that they depend on. */
 static bool center_of_mass(const Model *model, const Build *b, Key at, Probe *probe)
 {
-    int count = model->point_count;
-    for (int k = 0; k < model->design.unknown_count; k++)
-        if (!strcmp(model->design.unknowns[k].block->name, "thickness"))
-            return yaml_refuse(b->file, at.text,
-                               "where the thickness is unknown, so is the centre of mass: name a vertex");
     if (!model->body->ops->masses)
         return yaml_refuse(b->file, at.text, "the centre of mass of %s is not known", model->body->noun);
-    int *all = mem_alloc((size_t)count, sizeof *all);
-    double *mass = mem_alloc((size_t)count, sizeof *mass), total = 0;
-    model->body->ops->masses(model, model->cases[0].stages[0].p, mass);
-    for (int v = 0; v < count; v++) all[v] = v, total += mass[v];
-    for (int v = 0; v < count; v++) mass[v] /= total;
-    *probe = (Probe){count, all, mass};
+    *probe = probe_center(model->body->ops->masses(model));
     return true;
 }
 
@@ -85,14 +74,8 @@ bool model_find_point(const Model *model, const Build *b, Key at, const char *ve
     double one = 1;
     int point;
     if (!(model->mesh ? mesh_point : only_point)(model, b, at, vertex, &point)) return false;
-    *probe = (Probe){1, mem_copy(&point, 1, sizeof point), mem_copy(&one, 1, sizeof one)};
+    *probe = (Probe){mem_copy(&point, 1, sizeof point), masses_fixed(1, &one)};
     return true;
-}
-
-void model_free_point(Probe probe)
-{
-    mem_free((void *)probe.vertices);
-    mem_free((void *)probe.weights);
 }
 
 static bool is_straight(double (*points)[3])
@@ -107,8 +90,8 @@ static bool is_straight(double (*points)[3])
     return sqrt(cross) <= 1e-9 * size;
 }
 
-static bool curve_objective(const Build *b, Key at, const CurveScene *curve, Probe probe, double weight,
-                            Objective *objective)
+static bool curve_objective(const Build *b, Key at, const CurveScene *curve, const Probe *probe,
+                            double weight, Objective *objective)
 {
     if (curve->arc && is_straight(curve->arc))
         return yaml_refuse(b->file, key("%s.curve.arc", at.text).text,
@@ -134,7 +117,7 @@ static bool put_frames(const Build *b, Key at, int frame, const int *frames, int
 
 /* A waypoint for each target, over the frames from the delay after its switch until the next one. */
 static bool reach_objectives(Model *model, const Build *b, Key at, const Scene *scene,
-                             const ReachScene *reach, Probe probe, double weight)
+                             const ReachScene *reach, const Probe *probe, double weight)
 {
     double step = scene->time.step;
     for (int k = 0; k < reach->targets_count; k++) {
@@ -163,17 +146,17 @@ static bool point_objectives(Model *model, const Build *b, Key at, const Scene *
     if (!model_find_point(model, b, at, vertex, &probe)) return false;
     bool ok;
     if (from->reach) {
-        ok = reach_objectives(model, b, at, scene, from->reach, probe, from->weight);
+        ok = reach_objectives(model, b, at, scene, from->reach, &probe, from->weight);
     } else {
         Objective objective;
-        if ((ok = !curve || curve_objective(b, at, curve, probe, from->weight, &objective))) {
-            if (waypoint) objective = objective_waypoint(probe, waypoint->at, from->weight);
+        if ((ok = !curve || curve_objective(b, at, curve, &probe, from->weight, &objective))) {
+            if (waypoint) objective = objective_waypoint(&probe, waypoint->at, from->weight);
             ok = put_frames(b, at, waypoint ? waypoint->frame : curve->frame,
                             waypoint ? waypoint->frames : curve->frames, scene->time.steps, &objective);
             *case_add_objective(&model->cases[0]) = objective;
         }
     }
-    model_free_point(probe);
+    probe_clear(&probe);
     return ok;
 }
 

@@ -22,11 +22,7 @@ struct ProbeKind {
 
 static Vec3 point_at(const ModelProbe *probe, int k, const Moment *now)
 {
-    const Probe *point = &probe->points[k];
-    Vec3 at = vec3(0, 0, 0);
-    for (int i = 0; i < point->count; i++)
-        at = vec3_axpy(point->weights[i], vec3_load(now->place + 3 * point->vertices[i]), at);
-    return at;
+    return probe_at(&probe->points[k], now->place, now->shot->p);
 }
 
 static void measure_place(const ModelProbe *probe, const Moment *now, double *values)
@@ -95,9 +91,10 @@ static bool group_mean(const Model *model, const Build *b, Key at, const char *n
 {
     Indices found = {0};
     if (!model->body->ops->select(model, b, at.text, name, &found)) return false;
-    double *weights = mem_alloc((size_t)found.count, sizeof *weights);
-    for (int i = 0; i < found.count; i++) weights[i] = 1.0 / found.count;
-    *probe = (Probe){found.count, found.items, weights};
+    double *alike = mem_alloc((size_t)found.count, sizeof *alike);
+    for (int i = 0; i < found.count; i++) alike[i] = 1;
+    *probe = (Probe){found.items, masses_fixed(found.count, alike)};
+    mem_free(alike);
     return true;
 }
 
@@ -121,19 +118,12 @@ static bool add_points(const Model *model, const Build *b, Key at, char *const *
     return ok;
 }
 
-static bool is_same_point(const Probe *a, const Probe *b)
-{
-    size_t count = (size_t)a->count;
-    return a->count == b->count && !memcmp(a->vertices, b->vertices, count * sizeof *a->vertices) &&
-           !memcmp(a->weights, b->weights, count * sizeof *a->weights);
-}
-
 /* Through one point goes no line that would have an angle. */
 static bool check_distinct(const Build *b, Key at, char *const *names, const ModelProbe *probe)
 {
     for (int k = 0; k < probe->point_count; k++)
         for (int j = 0; j < k; j++)
-            if (is_same_point(&probe->points[j], &probe->points[k]))
+            if (probe_is_same(&probe->points[j], &probe->points[k]))
                 return yaml_refuse(b->file, at.text, "'%s' and '%s' are one point; they must be different",
                                    names[j], names[k]);
     return true;
@@ -274,7 +264,7 @@ void model_clear_probes(Model *model)
 {
     for (int k = 0; k < model->probe_count; k++) {
         ModelProbe *probe = &model->probes[k];
-        for (int i = 0; i < PROBE_POINTS; i++) model_free_point(probe->points[i]);
+        for (int i = 0; i < PROBE_POINTS; i++) probe_clear(&probe->points[i]);
         mem_free(probe->held.items);
         mem_free(probe->name);
     }

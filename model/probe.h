@@ -36,6 +36,5 @@ void model_add_probes(const Model *model, const double *values, int rows, bool f
                       Arrays *list);
 
 /* The only point of that name (a vertex of the mesh's file, a group of one, a node of a rod; NULL: the centre of mass); to be
- * freed. */
+ * cleared. */
 bool model_find_point(const Model *model, const Build *b, Key at, const char *vertex, Probe *probe);
-void model_free_point(Probe probe);

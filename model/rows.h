@@ -9,6 +9,7 @@
 #include "io/result.h"
 #include "model/build.h"
 #include "optim/case.h"
+#include "solve/masses.h"
 #include "solve/newton.h"
 #include "solve/params.h"
 #include "world/world.h"
@@ -165,8 +166,8 @@ typedef struct BodyOps {
     /* The points of a part that has a name, or `all`. */
     bool (*select)(const struct Model *model, const Build *b, const char *at, const char *name,
                    Indices *found);
-    /* With those numbers, mass[point_count] kg; optional. */
-    void (*masses)(const struct Model *model, const double *p, double *mass);
+    /* Of all points, kg; to be cleared; optional. */
+    Masses (*masses)(const struct Model *model);
 
     /* Sum of squared jumps of a block of p between neighbours; optional. */
     Objective (*smoothness)(const struct Model *model, const ParamBlock *block, double weight);

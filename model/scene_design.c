@@ -182,8 +182,7 @@ static const YamlTable unknowns_table = {
          .doc = "of a solid's film, a number per face of the surface"},
         {YAML_OPTIONAL(UnknownsScene, thickness, &thickness_unknown_table),
          .doc = "of a shell, a number per face. Obstacles feel it; what the body keeps from itself stays "
-                "that of the "
-                "scene's thickness, and nothing may ask for its centre of mass"},
+                "that of the scene's thickness, and a centre of mass follows it"},
         {YAML_OPTIONAL(UnknownsScene, fold, &fold_unknown_table), .doc = "a number per edge"},
         {YAML_OPTIONAL(UnknownsScene, natural_strain, &strain_unknown_table),
          .doc = "of a rod, three numbers per element"},

@@ -196,7 +196,7 @@ static void advise_damping(Model *model)
     double *mass = mem_alloc((size_t)model->point_count, sizeof *mass), sum = 0, size = 0,
            g = vec3_length(vec3_load(p + model->gravity)), damping = p[block->offset];
     const WorldBody *body = &model->world->body;
-    model->body->ops->masses(model, p, mass);
+    model_masses(model, p, mass);
     for (int v = 0; v < model->point_count; v++) {
         sum += mass[v];
         size = fmax(size, vec3_length(vec3_sub(vec3_load(body->rest[v]), vec3_load(body->rest[0]))));

@@ -3,6 +3,7 @@
  * (Objective.first, .last). */
 #pragma once
 #include "optim/control.h"
+#include "optim/probe.h"
 #include "solve/objective.h"
 #include <stdbool.h>
 
@@ -27,30 +28,24 @@ Objective objective_cloud(const PointCloud *cloud, double weight);
 Objective objective_height(int count, const int *vertices, double weight);
 Objective objective_height_at(int count, const int *vertices, double at, double weight);
 
-/* A point of the body, q = sum weights[k] x_vertices[k]: a vertex, or a centre of mass. */
-typedef struct Probe {
-    int count;
-    const int *vertices;
-    const double *weights;
-} Probe;
-
-/* |q - at|^2, m^2. */
-Objective objective_waypoint(Probe probe, const double at[3], double weight);
+/* |q - at|^2, m^2, q the point of the probe. */
+Objective objective_waypoint(const Probe *probe, const double at[3], double weight);
 
 /* The squared distance of q to a polyline of count >= 2 points: that to the nearest segment, blended between
  * segments whose squared distances differ by less than blend^2 (their mean with weights exp(-d^2/blend^2)),
  * so that the gradient has no jump where two segments meet. blend > 0, m. */
-Objective objective_polyline(Probe probe, int count, const double (*points)[3], double blend, double weight);
+Objective objective_polyline(const Probe *probe, int count, const double (*points)[3], double blend,
+                             double weight);
 
 /* The squared distance of q to the arc from points[0] through points[1] to points[2], which are not on one
  * line. */
-Objective objective_arc(Probe probe, const double points[3][3], double weight);
+Objective objective_arc(const Probe *probe, const double points[3][3], double weight);
 
 /* Distance of q to a waypoint or to the curve of a polyline or an arc, m; NAN for other rows. */
-double objective_distance(const Objective *objective, const double *x);
+double objective_distance(const Objective *objective, const double *x, const double *p);
 
 /* Where q is; false for rows without one. */
-bool objective_point(const Objective *objective, const double *x, double q[3]);
+bool objective_point(const Objective *objective, const double *x, const double *p, double q[3]);
 
 /* What q is to meet: its place, or its curve's points, of an arc those of OBJECTIVE_CHORDS chords. The caller frees; NULL and
  * count 0 for rows without one. */

@@ -8,9 +8,7 @@
 #include <string.h>
 
 typedef struct Tracked {
-    int count;
-    int *vertices;
-    double *weights;
+    Probe probe;
     double at[3]; /* waypoint */
     int point_count;
     double (*points)[3]; /* polyline */
@@ -19,39 +17,22 @@ typedef struct Tracked {
     double radius, angle;      /* ... from e1 towards e2               */
 } Tracked;
 
-static Vec3 probe_position(const Tracked *tracked, const double *x)
-{
-    Vec3 q = vec3(0, 0, 0);
-    for (int k = 0; k < tracked->count; k++)
-        q = vec3_axpy(tracked->weights[k], vec3_load(x + 3 * tracked->vertices[k]), q);
-    return q;
-}
-
-static void probe_add(const Tracked *tracked, double amount, Vec3 g, double *dx)
-{
-    for (int k = 0; k < tracked->count; k++) {
-        double *to = dx + 3 * tracked->vertices[k], factor = amount * tracked->weights[k];
-        to[0] += factor * g.x, to[1] += factor * g.y, to[2] += factor * g.z;
-    }
-}
-
 /* ---- Waypoint ---- */
 
 static double waypoint_value(const void *self, double weight, const double *x, const double *p, double *dx,
                              double *dp)
 {
-    (void)p, (void)dp;
     const Tracked *tracked = self;
-    Vec3 d = vec3_sub(probe_position(tracked, x), vec3_load(tracked->at));
-    if (dx) probe_add(tracked, 2 * weight, d, dx);
+    Vec3 d = vec3_sub(probe_at(&tracked->probe, x, p), vec3_load(tracked->at));
+    if (dx) probe_pull(&tracked->probe, x, p, vec3_scale(2 * weight, d), dx, dp);
     return vec3_dot(d, d);
 }
 
 static void waypoint_product(const void *self, double weight, const double *x, const double *p,
                              const double *vx, const double *vp, double *hx, double *hp)
 {
-    (void)x, (void)p, (void)vp, (void)hp;
-    probe_add(self, 2 * weight, probe_position(self, vx), hx);
+    const Probe *probe = &((const Tracked *)self)->probe;
+    probe_pull(probe, x, p, vec3_scale(2 * weight, probe_change(probe, x, p, vx, vp)), hx, hp);
 }
 
 /* ---- Polyline ---- */
@@ -81,9 +62,8 @@ static double segment_weight(const Tracked *tracked, double distance2, double le
 static double polyline_value(const void *self, double weight, const double *x, const double *p, double *dx,
                              double *dp)
 {
-    (void)p, (void)dp;
     const Tracked *tracked = self;
-    Vec3 q = probe_position(tracked, x), t;
+    Vec3 q = probe_at(&tracked->probe, x, p), t;
     double least = least_distance2(tracked, q), sum = 0, mean = 0;
     for (int s = 0; s + 1 < tracked->point_count; s++) {
         Vec3 d = from_piece(tracked, s, q, &t);
@@ -95,7 +75,8 @@ static double polyline_value(const void *self, double weight, const double *x, c
     for (int s = 0; dx && s + 1 < tracked->point_count; s++) {
         Vec3 d = from_piece(tracked, s, q, &t);
         double d2 = vec3_dot(d, d), w = segment_weight(tracked, d2, least) / sum;
-        probe_add(tracked, 2 * weight * w * (1 - (d2 - mean) / (tracked->blend * tracked->blend)), d, dx);
+        double amount = 2 * weight * w * (1 - (d2 - mean) / (tracked->blend * tracked->blend));
+        probe_pull(&tracked->probe, x, p, vec3_scale(amount, d), dx, dp);
     }
     return mean;
 }
@@ -104,9 +85,9 @@ static double polyline_value(const void *self, double weight, const double *x, c
 static void polyline_product(const void *self, double weight, const double *x, const double *p,
                              const double *vx, const double *vp, double *hx, double *hp)
 {
-    (void)p, (void)vp, (void)hp;
     const Tracked *tracked = self;
-    Vec3 q = probe_position(tracked, x), v = probe_position(tracked, vx), t;
+    const Probe *probe = &tracked->probe;
+    Vec3 q = probe_at(probe, x, p), v = probe_change(probe, x, p, vx, vp), t;
     double least = least_distance2(tracked, q), sum = 0;
     for (int pass = 0; pass < 2; pass++)
         for (int s = 0; s + 1 < tracked->point_count; s++) {
@@ -115,7 +96,8 @@ static void polyline_product(const void *self, double weight, const double *x, c
             if (pass == 0)
                 sum += w;
             else
-                probe_add(tracked, 2 * weight * w / sum, vec3_axpy(-vec3_dot(t, v), t, v), hx);
+                probe_pull(probe, x, p, vec3_scale(2 * weight * w / sum, vec3_axpy(-vec3_dot(t, v), t, v)),
+                           hx, hp);
         }
 }
 
@@ -139,19 +121,19 @@ static Vec3 from_arc(const Tracked *tracked, Vec3 q, Vec3 *t)
 static double arc_value(const void *self, double weight, const double *x, const double *p, double *dx,
                         double *dp)
 {
-    (void)p, (void)dp;
-    Vec3 t, d = from_arc(self, probe_position(self, x), &t);
-    if (dx) probe_add(self, 2 * weight, d, dx);
+    const Probe *probe = &((const Tracked *)self)->probe;
+    Vec3 t, d = from_arc(self, probe_at(probe, x, p), &t);
+    if (dx) probe_pull(probe, x, p, vec3_scale(2 * weight, d), dx, dp);
     return vec3_dot(d, d);
 }
 
 static void arc_product(const void *self, double weight, const double *x, const double *p, const double *vx,
                         const double *vp, double *hx, double *hp)
 {
-    (void)p, (void)vp, (void)hp;
-    Vec3 v = probe_position(self, vx), t;
-    from_arc(self, probe_position(self, x), &t);
-    probe_add(self, 2 * weight, vec3_axpy(-vec3_dot(t, v), t, v), hx);
+    const Probe *probe = &((const Tracked *)self)->probe;
+    Vec3 v = probe_change(probe, x, p, vx, vp), t;
+    from_arc(self, probe_at(probe, x, p), &t);
+    probe_pull(probe, x, p, vec3_scale(2 * weight, vec3_axpy(-vec3_dot(t, v), t, v)), hx, hp);
 }
 
 /* ---- Rows ---- */
@@ -159,8 +141,7 @@ static void arc_product(const void *self, double weight, const double *x, const 
 static void tracked_destroy(void *self)
 {
     Tracked *tracked = self;
-    mem_free(tracked->vertices);
-    mem_free(tracked->weights);
+    probe_clear(&tracked->probe);
     mem_free(tracked->points);
     mem_free(tracked);
 }
@@ -169,23 +150,22 @@ static const ObjectiveOps waypoint_ops = {"waypoint", waypoint_value, waypoint_p
 static const ObjectiveOps polyline_ops = {"curve", polyline_value, polyline_product, tracked_destroy};
 static const ObjectiveOps arc_ops = {"curve", arc_value, arc_product, tracked_destroy};
 
-static Tracked *track(Probe probe)
+static Tracked *track(const Probe *probe)
 {
     Tracked *tracked = mem_alloc(1, sizeof *tracked);
-    tracked->count = probe.count;
-    tracked->vertices = mem_copy(probe.vertices, (size_t)probe.count, sizeof *probe.vertices);
-    tracked->weights = mem_copy(probe.weights, (size_t)probe.count, sizeof *probe.weights);
+    tracked->probe = probe_copy(probe);
     return tracked;
 }
 
-Objective objective_waypoint(Probe probe, const double at[3], double weight)
+Objective objective_waypoint(const Probe *probe, const double at[3], double weight)
 {
     Tracked *tracked = track(probe);
     memcpy(tracked->at, at, sizeof tracked->at);
     return (Objective){&waypoint_ops, tracked, weight, 0, 0};
 }
 
-Objective objective_polyline(Probe probe, int count, const double (*points)[3], double blend, double weight)
+Objective objective_polyline(const Probe *probe, int count, const double (*points)[3], double blend,
+                             double weight)
 {
     Tracked *tracked = track(probe);
     tracked->point_count = count;
@@ -194,7 +174,7 @@ Objective objective_polyline(Probe probe, int count, const double (*points)[3], 
     return (Objective){&polyline_ops, tracked, weight, 0, 0};
 }
 
-Objective objective_arc(Probe probe, const double points[3][3], double weight)
+Objective objective_arc(const Probe *probe, const double points[3][3], double weight)
 {
     Tracked *tracked = track(probe);
     Vec3 a = vec3_load(points[0]), ab = vec3_sub(vec3_load(points[1]), a),
@@ -215,14 +195,16 @@ Objective objective_arc(Probe probe, const double points[3][3], double weight)
     return (Objective){&arc_ops, tracked, weight, 0, 0};
 }
 
-double objective_distance(const Objective *objective, const double *x)
+double objective_distance(const Objective *objective, const double *x, const double *p)
 {
     Vec3 t;
     const Tracked *tracked = objective->self;
     if (objective->ops == &waypoint_ops)
-        return vec3_length(vec3_sub(probe_position(tracked, x), vec3_load(tracked->at)));
-    if (objective->ops == &polyline_ops) return sqrt(least_distance2(tracked, probe_position(tracked, x)));
-    if (objective->ops == &arc_ops) return vec3_length(from_arc(tracked, probe_position(tracked, x), &t));
+        return vec3_length(vec3_sub(probe_at(&tracked->probe, x, p), vec3_load(tracked->at)));
+    if (objective->ops == &polyline_ops)
+        return sqrt(least_distance2(tracked, probe_at(&tracked->probe, x, p)));
+    if (objective->ops == &arc_ops)
+        return vec3_length(from_arc(tracked, probe_at(&tracked->probe, x, p), &t));
     return NAN;
 }
 
@@ -231,10 +213,10 @@ static const Tracked *tracked_of(const Objective *objective)
     return objective->ops->destroy == tracked_destroy ? objective->self : NULL;
 }
 
-bool objective_point(const Objective *objective, const double *x, double q[3])
+bool objective_point(const Objective *objective, const double *x, const double *p, double q[3])
 {
     const Tracked *tracked = tracked_of(objective);
-    if (tracked) vec3_store(q, probe_position(tracked, x));
+    if (tracked) vec3_store(q, probe_at(&tracked->probe, x, p));
     return tracked != NULL;
 }
 

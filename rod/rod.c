@@ -123,15 +123,16 @@ WorldBody rod_world_body(Rod *rod)
                        .radius = rod->radii};
 }
 
-void rod_node_mass(const Rod *rod, double *mass)
+Masses rod_masses(const Rod *rod)
 {
     RodLayout layout = rod_layout(rod, false);
-    memset(mass, 0, (size_t)layout.nodes * sizeof *mass);
+    Masses masses = masses_zero(layout.nodes);
     for (int e = 0; e < rod->elements; e++) {
         double half = rod->unit[e].mass * rod_element_length(rod, e) / 2,
-               *node = mass + rod_element_node(&layout, e);
+               *node = masses.fixed + rod_element_node(&layout, e);
         node[0] += half, node[1] += half;
     }
+    return masses;
 }
 
 double rod_strand_mass(const Rod *rod, int strand)
@@ -236,16 +237,14 @@ static void node_lengths(const Rod *rod, double *share)
 static void add_lumped_terms(System *sys, const Rod *rod, bool dynamic)
 {
     int nodes = rod_node_count(rod);
-    double *mass = mem_alloc((size_t)nodes, sizeof *mass);
-    rod_node_mass(rod, mass);
-    system_add(sys, lumped_gravity_term(masses_fixed(nodes, mass), rod->gravity));
+    system_add(sys, lumped_gravity_term(rod_masses(rod), rod->gravity));
     system_add(sys, lumped_load_term(nodes, rod->load));
-    if (dynamic) {
-        system_add(sys, kinetic_inertia_term(masses_fixed(nodes, mass)));
-        node_lengths(rod, mass);
-        system_add(sys, kinetic_damping_term(nodes, mass, rod->damping));
-    }
-    mem_free(mass);
+    if (!dynamic) return;
+    double *length = mem_alloc((size_t)nodes, sizeof *length);
+    node_lengths(rod, length);
+    system_add(sys, kinetic_inertia_term(rod_masses(rod)));
+    system_add(sys, kinetic_damping_term(nodes, length, rod->damping));
+    mem_free(length);
 }
 
 static void fix(System *sys, int first, int count, bool held)

@@ -26,6 +26,7 @@
 #include "rod/inverse.h"
 #include "rod/potential.h"
 #include "rod/section.h"
+#include "solve/masses.h"
 #include "solve/params.h"
 #include "solve/system.h"
 #include "field/flux.h"
@@ -118,8 +119,8 @@ double rod_length(const Rod *rod);
  * rod is its own neighbour. Borrowed from the rod. */
 WorldBody rod_world_body(Rod *rod);
 
-/* Mass of each node, mass[nodes], kg: half of the elements beside it. */
-void rod_node_mass(const Rod *rod, double *mass);
+/* Mass of each node, kg: half of the elements beside it; the caller's. */
+Masses rod_masses(const Rod *rod);
 
 /* Of a strand, kg. */
 double rod_strand_mass(const Rod *rod, int strand);

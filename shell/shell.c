@@ -168,7 +168,7 @@ Masses shell_masses(const Shell *shell)
 void shell_vertex_mass(const Shell *shell, const double *p, double *mass)
 {
     Masses masses = shell_masses(shell);
-    for (int v = 0; v < masses.count; v++) mass[v] = masses_at(&masses, v, p);
+    masses_all(&masses, p, mass);
     masses_clear(&masses);
 }
 

@@ -76,11 +76,8 @@ WorldBody solid_world_body(const Solid *solid)
 static void add_kinetic_terms(const Solid *solid, System *sys)
 {
     int nodes = tets_node_count(solid->tets);
-    double *mass = mem_alloc((size_t)nodes, sizeof *mass);
-    solid_node_mass(solid, mass);
-    system_add(sys, kinetic_inertia_term(masses_fixed(nodes, mass)));
+    system_add(sys, kinetic_inertia_term(solid_masses(solid)));
     system_add(sys, kinetic_damping_term(nodes, NULL, solid->damping));
-    mem_free(mass);
 }
 
 System *solid_system(const Solid *solid, bool motion)
@@ -107,14 +104,15 @@ void solid_default_params(const Solid *solid, double *p)
     flux_blocks_default(&solid->fields, &solid->flux, p);
 }
 
-void solid_node_mass(const Solid *solid, double *mass)
+Masses solid_masses(const Solid *solid)
 {
     const Tets *tets = solid->tets;
     double corner = tets->order == TET_QUADRATIC ? 1.0 / 36 : 1.0 / 4, middle = 4.0 / 27;
-    memset(mass, 0, (size_t)tets_node_count(tets) * sizeof *mass);
+    Masses masses = masses_zero(tets_node_count(tets));
     for (int i = 0; i < tets->count * tets->each; i++)
-        mass[tets->nodes[i]] +=
+        masses.fixed[tets->nodes[i]] +=
             (i % tets->each < 4 ? corner : middle) * solid->density * tets->volume[i / tets->each];
+    return masses;
 }
 
 /* The skin, or of thickness 0 none: quadratic tetrahedra have faces in four parts. */
@@ -139,12 +137,7 @@ Term solid_magnetic_term(const Solid *solid)
 
 Term solid_gravity_term(const Solid *solid)
 {
-    int nodes = tets_node_count(solid->tets);
-    double *mass = mem_alloc((size_t)nodes, sizeof *mass);
-    solid_node_mass(solid, mass);
-    Term term = lumped_gravity_term(masses_fixed(nodes, mass), solid->gravity);
-    mem_free(mass);
-    return term;
+    return lumped_gravity_term(solid_masses(solid), solid->gravity);
 }
 
 Term solid_load_term(const Solid *solid)

@@ -4,6 +4,7 @@
  * Dofs: 3 node_count positions, m. Energies: docs/theory.md, solids. */
 #pragma once
 #include "solid/tets.h"
+#include "solve/masses.h"
 #include "solve/params.h"
 #include "solve/system.h"
 #include "field/flux.h"
@@ -75,8 +76,8 @@ System *solid_system(const Solid *solid, bool motion);
 void solid_default_params(const Solid *solid, double *p);
 
 /* Lumped mass of each node, kg: corners of quadratic tetrahedra bear 1/36 of them, middles 4/27 [Hinton, Rock, Zienkiewicz
- * 1976]; mass[node_count]. */
-void solid_node_mass(const Solid *solid, double *mass);
+ * 1976]; the caller's. */
+Masses solid_masses(const Solid *solid);
 
 /* The least det F in the state, at corners and middles of edges too: where it is not positive, the solid is turned inside
  * out there; and the tetrahedron (NULL: not asked for). */

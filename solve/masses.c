@@ -1,6 +1,11 @@
 #include "solve/masses.h"
 #include "base/memory.h"
 
+Masses masses_zero(int count)
+{
+    return (Masses){.count = count, .fixed = mem_alloc((size_t)count, sizeof(double))};
+}
+
 Masses masses_fixed(int count, const double *mass)
 {
     return (Masses){.count = count, .fixed = mem_copy(mass, (size_t)count, sizeof *mass)};
@@ -22,12 +27,26 @@ Masses masses_of_faces(int count, int face_count, const int (*faces)[3], const d
     return masses;
 }
 
+Masses masses_copy(const Masses *masses)
+{
+    int count = masses->count;
+    if (masses->fixed) return masses_fixed(count, masses->fixed);
+    return (Masses){.count = count,
+                    .first = mem_copy(masses->first, (size_t)count + 1, sizeof *masses->first),
+                    .parts = mem_copy(masses->parts, (size_t)masses->first[count], sizeof *masses->parts)};
+}
+
 void masses_clear(Masses *masses)
 {
     mem_free(masses->fixed);
     mem_free(masses->first);
     mem_free(masses->parts);
     *masses = (Masses){0};
+}
+
+void masses_all(const Masses *masses, const double *p, double *mass)
+{
+    for (int k = 0; k < masses->count; k++) mass[k] = masses_at(masses, k, p);
 }
 
 double masses_at(const Masses *masses, int point, const double *p)

@@ -14,14 +14,20 @@ typedef struct Masses {
     MassPart *parts; /* owned                                             */
 } Masses;
 
-/* mass[count] in kg is copied: p does not matter. */
+/* Fixed ones, all 0, to be filled in; mass[count] in kg, copied. */
+Masses masses_zero(int count);
 Masses masses_fixed(int count, const double *mass);
 
 /* Of triangles, which give each corner a third: the parts of a point in the order of the triangles. Triangle f has entries
  * density + f and thickness + f. */
 Masses masses_of_faces(int count, int face_count, const int (*faces)[3], const double *area, int density,
                        int thickness);
+
+Masses masses_copy(const Masses *masses);
 void masses_clear(Masses *masses);
+
+/* Of all points, mass[count] in kg. */
+void masses_all(const Masses *masses, const double *p, double *mass);
 
 /* Of a point, kg; its change with p, dp laid out as p; dp += amount times its derivative. */
 double masses_at(const Masses *masses, int point, const double *p);

@@ -12,6 +12,7 @@
 #include "solve/element.h"
 #include <math.h>
 
+static const double CRUSHED = 0.05;            /* of the area */
 static const double LEAST_EXTRAPOLATED = 0.25; /* det C: half of the area */
 
 typedef struct MembranePack {
@@ -154,6 +155,16 @@ static Strain strain(const Membrane *membrane, int pack, const Pack *x)
     return s;
 }
 
+/* Of the vertices of a pack's faces, values laid out as x. */
+static void gather(const Membrane *membrane, int pack, const double *values, Pack v[9])
+{
+    for (int l = 0; l < PACK_LANES; l++) {
+        int dof[9];
+        membrane_dofs(membrane, pack_element(membrane_count(membrane), pack, l), dof);
+        for (int i = 0; i < 9; i++) v[i][l] = values[dof[i]];
+    }
+}
+
 /* The stress that the last step was to bring, of the strain G(x0) + DG(x0) d: what a step stretches beside that, to second
  * order, the next one takes back, and it must not pass for stiffness [mixed integration points: Magisano, Leonetti,
  * Garcea 2017]. Where that strain would leave less than half of the area, the stress stays its own. */
@@ -161,11 +172,8 @@ static void extrapolate(const Membrane *membrane, int pack, const Point *at, Str
 {
     const MembranePack *face = &membrane->packs[pack];
     Pack x[9], d[9];
-    for (int l = 0; l < PACK_LANES; l++) {
-        int dof[9];
-        membrane_dofs(membrane, pack_element(membrane_count(membrane), pack, l), dof);
-        for (int i = 0; i < 9; i++) x[i][l] = at->x_from[dof[i]], d[i][l] = at->step[dof[i]];
-    }
+    gather(membrane, pack, at->x_from, x);
+    gather(membrane, pack, at->step, d);
     Strain from = strain(membrane, pack, x);
     Pack3 e0, e1;
     gradient(face, d, &e0, &e1);
@@ -290,6 +298,27 @@ static void membrane_param_forward(const void *self, int pack, const Point *at, 
            r);
 }
 
+bool membrane_is_crushed(MembraneMaterial material, double area)
+{
+    return material == MEMBRANE_ST_VENANT_KIRCHHOFF && area < CRUSHED;
+}
+
+/* A crushed face may be at rest, and next to it no energy grows. */
+static bool membrane_tangles(const void *self, const Point *at)
+{
+    const Membrane *membrane = self;
+    for (int pack = 0; pack < pack_count(membrane->layer.count); pack++) {
+        Pack x[9];
+        Pack3 f0, f1;
+        gather(membrane, pack, at->x, x);
+        gradient(&membrane->packs[pack], x, &f0, &f1);
+        Pack slant = pack3_dot(f0, f1), det = pack3_dot(f0, f0) * pack3_dot(f1, f1) - slant * slant;
+        for (int l = 0; l < PACK_LANES; l++)
+            if (membrane_is_crushed(membrane->def.material, sqrt(fmax(det[l], 0)))) return true;
+    }
+    return false;
+}
+
 static void membrane_destroy(void *self)
 {
     face_layer_clear(&((Membrane *)self)->layer);
@@ -303,6 +332,7 @@ static const TermOps membrane_ops = {
     .size = membrane_size,
     .dofs = membrane_dofs,
     .eval = membrane_eval,
+    .tangles = membrane_tangles,
     .param = membrane_param,
     .param_forward = membrane_param_forward,
     .destroy = membrane_destroy,

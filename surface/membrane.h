@@ -15,6 +15,11 @@ typedef struct MembraneDef {
     int young; /* first entry in p of [row] Pa */
 } MembraneDef;
 
+/* Is a face with that part of its area at rest none any more? A twentieth and less, of St. Venant-Kirchhoff, which may be at rest
+ * and stable without any: where a face is free across, pulled to a Green strain of 1/(2 nu). Never of neo-Hookean, which has no
+ * energy there. */
+bool membrane_is_crushed(MembraneMaterial material, double area);
+
 /* Takes the layer. Where steps turn (TermOps.follow), its Hessian heeds Point.x_from. */
 Term membrane_term(FaceLayer layer, const MembraneDef *def);
 

@@ -28,6 +28,17 @@ static Shell *make_shell(BendingModel bending)
     return shell;
 }
 
+/* What is asked for: places of vertices, those as a cloud, or that of the centre of mass. */
+typedef enum Goal { PLACES, CLOUD, CENTER } Goal;
+
+static Objective center_objective(const Shell *shell)
+{
+    Probe center = probe_center(shell_masses(shell));
+    Objective objective = objective_waypoint(&center, (double[]){1e-3, 0, 8e-3}, 1);
+    probe_clear(&center);
+    return objective;
+}
+
 /* The same places without the vertices that they are of, seen along y. */
 static Objective seen_outline(const Mesh *mesh, double (*target)[3])
 {
@@ -36,7 +47,7 @@ static Objective seen_outline(const Mesh *mesh, double (*target)[3])
     return objective_cloud(&cloud, 1);
 }
 
-static void make_cases(Fixture *f, Random *random, bool seen)
+static void make_cases(Fixture *f, Random *random, Goal goal)
 {
     const Shell *shell = f->shell;
     int count = shell->mesh->vertex_count;
@@ -59,8 +70,9 @@ static void make_cases(Fixture *f, Random *random, bool seen)
         p[shell->flux.uniform] = 0.01, p[shell->flux.uniform + 2] = c ? -0.03 : 0.05;
         f->cases[c] = case_create(c ? "down" : "up", p, (size_t)shell->params.size, 0);
         f->cases[c].weight = c ? 0.5 : 1;
-        *case_add_objective(&f->cases[c]) = seen
-                                                ? seen_outline(shell->mesh, target)
+        *case_add_objective(&f->cases[c]) = goal == CLOUD ? seen_outline(shell->mesh, target)
+                                            : goal == CENTER
+                                                ? center_objective(shell)
                                                 : objective_target(count, all, (const double(*)[3])target, 1);
         shell_rest_state(shell, x);
         case_start(&f->cases[c], shell_system(shell), x);
@@ -94,10 +106,9 @@ static void free_fixture(Fixture *f)
 static double tangent_slope(const Fixture *f, const double *v)
 {
     double slope = 0;
-    int dofs = shell_dof_count(f->shell);
-    double *dp = mem_alloc((size_t)f->shell->params.size, sizeof *dp),
-           *dx = mem_alloc((size_t)dofs, sizeof *dx);
-    double *gx = mem_alloc((size_t)dofs, sizeof *gx);
+    int dofs = shell_dof_count(f->shell), params = f->shell->params.size;
+    double *dp = mem_alloc((size_t)params, sizeof *dp), *dx = mem_alloc((size_t)dofs, sizeof *dx),
+           *gx = mem_alloc((size_t)dofs, sizeof *gx), *gp = mem_alloc((size_t)params, sizeof *gp);
     for (int c = 0; c < 2; c++) {
         const Case *load = &f->cases[c];
         double *p = mem_copy(load->stages[0].p, (size_t)f->shell->params.size, sizeof *p);
@@ -107,13 +118,16 @@ static double tangent_slope(const Fixture *f, const double *v)
         system_param_forward(load->sys, &at, dp, dx);
         system_solve(load->sys, dx, dx);
         memset(gx, 0, (size_t)dofs * sizeof *gx);
-        load->objectives[0].ops->value(load->objectives[0].self, load->weight, load->state.x, p, gx, dp);
+        memset(gp, 0, (size_t)params * sizeof *gp);
+        load->objectives[0].ops->value(load->objectives[0].self, load->weight, load->state.x, p, gx, gp);
         for (int i = 0; i < dofs; i++) slope -= gx[i] * dx[i];
+        for (int i = 0; i < params; i++) slope += gp[i] * dp[i];
         mem_free(p);
     }
     mem_free(dp);
     mem_free(dx);
     mem_free(gx);
+    mem_free(gp);
     return slope;
 }
 
@@ -170,13 +184,12 @@ static void check_product(Fixture *f, const double *v, double *out)
     mem_free(dx);
 }
 
-/* With the places as a target of vertices, or seen as a cloud. */
-static void check(BendingModel bending, const char *block, Unknown unknown, bool seen)
+static void check(BendingModel bending, const char *block, Unknown unknown, Goal goal)
 {
     long blocks = mem_live_count();
     Random random = random_seed(5);
     Fixture f = make_fixture(bending, unknown, block);
-    make_cases(&f, &random, seen);
+    make_cases(&f, &random, goal);
     int n = f.design.size;
     f.u = mem_alloc((size_t)n, sizeof *f.u);
     for (int c = 0; c < 2; c++) design_read(&f.design, c, f.cases[c].stages[0].p, f.u);
@@ -190,7 +203,7 @@ static void check(BendingModel bending, const char *block, Unknown unknown, bool
     assert_true(isfinite(F));
     static_design_accept(f.sd);
     for (int i = 0; i < n; i++) v[i] = random_signed(&random), slope += g[i] * v[i];
-    if (!seen) check_product(&f, v, moved);
+    if (goal == PLACES) check_product(&f, v, moved);
     double tangent = tangent_slope(&f, v), h = 1e-3;
     for (int k = 0; k < 4; k++) {
         static const double steps[4] = {-2, -1, 1, 2};
@@ -215,23 +228,27 @@ static void test_gradients(void **state)
     (void)state;
     for (BendingModel bending = BENDING_MIDEDGE; bending <= BENDING_HINGE; bending++) {
         Unknown open = {.lower = -INFINITY, .upper = INFINITY, .scale = 1e4};
-        check(bending, "magnetization", open, false);
+        check(bending, "magnetization", open, PLACES);
         open.limit = 5e4, open.map = UNKNOWN_CAPPED_LENGTH;
-        check(bending, "magnetization", open, false);
+        check(bending, "magnetization", open, PLACES);
         open.limit = 2e4, open.map = UNKNOWN_FIXED_LENGTH;
-        check(bending, "magnetization", open, false);
+        check(bending, "magnetization", open, PLACES);
         check(bending, "young", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1e4, .upper = 1e8},
-              false);
+              PLACES);
         check(bending, "young", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1e4, .upper = 1e8},
-              true);
+              CLOUD);
         check(bending, "thickness", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1e-4, .upper = 1e-2},
-              false);
+              PLACES);
         check(bending, "density", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1, .upper = 1e5},
-              false);
+              PLACES);
+        check(bending, "thickness", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1e-4, .upper = 1e-2},
+              CENTER);
+        check(bending, "density", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1, .upper = 1e5},
+              CENTER);
         check(bending, "fold", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 0.01, .upper = 100},
-              false);
+              PLACES);
         check(bending, "flux_density", (Unknown){.scale = 0.05, .lower = -1, .upper = 1, .per_case = true},
-              false);
+              PLACES);
     }
 }
 

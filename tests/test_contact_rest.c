@@ -23,7 +23,7 @@ static double felt(const Built *b, double up[])
 static double *masses(const Built *b)
 {
     double *mass = mem_alloc((size_t)b->model->point_count, sizeof *mass);
-    b->model->body->ops->masses(b->model, b->model->cases[0].stages[0].p, mass);
+    model_masses(b->model, b->model->cases[0].stages[0].p, mass);
     return mass;
 }
 

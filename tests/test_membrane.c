@@ -128,6 +128,28 @@ static void test_crushed(void **state)
     }
 }
 
+/* Pulled along x and free across, St. Venant-Kirchhoff has c^2 = 1 - 2 nu G of its width left, and none from G = 1/(2 nu) on: it is
+ * at rest so, but no sheet any more. */
+static void test_flattened(void **state)
+{
+    (void)state;
+    const double poisson[] = {0.2, 0.3, 0.5}, parts[] = {0.9, 0.99, 1.01, 1.3};
+    for (int n = 0; n < 3; n++)
+        for (int k = 0; k < 4; k++) {
+            double nu = poisson[n], strain = parts[k] / (2 * nu), width = sqrt(fmax(1 - parts[k], 0));
+            Shell *shell = make_square(MEMBRANE_ST_VENANT_KIRCHHOFF, nu);
+            for (int v = 0; v < shell->mesh->vertex_count; v++)
+                if (shell->mesh->rest[v][0] > SIDE - 1e-9) shell_fix(shell, v, 0);
+            Body b = body_create(shell, shell_system(shell), YOUNG);
+            for (int v = 0; v < shell->mesh->vertex_count; v++) b.state.x[3 * v] *= sqrt(1 + 2 * strain);
+            NewtonStatus status = solve(&b).status;
+            assert_int_equal(status, parts[k] < 1 ? NEWTON_CONVERGED : NEWTON_TANGLED);
+            for (int v = 0; v < shell->mesh->vertex_count; v++)
+                assert_true(fabs(b.state.x[3 * v + 1] - width * shell->mesh->rest[v][1]) < 1e-6 * SIDE);
+            body_clear(&b);
+        }
+}
+
 /* No energy where there is no area: a step there is refused. */
 static void test_no_area(void **state)
 {
@@ -142,6 +164,6 @@ static void test_no_area(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_crushed),
-                                       cmocka_unit_test(test_no_area)};
+                                       cmocka_unit_test(test_flattened), cmocka_unit_test(test_no_area)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

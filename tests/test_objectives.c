@@ -134,21 +134,32 @@ static void test_point_rows(void **state)
     (void)state;
     Fixture f = make_fixture();
     int vertices[3] = {1, 5, 6};
-    double weights[3] = {0.2, 0.5, 0.3}, one = 1;
-    Probe centre = {3, vertices, weights}, vertex = {1, &vertices[1], &one};
+    Probe mean = {vertices, masses_fixed(3, (double[]){0.2, 0.5, 0.3})},
+          centre = probe_center(shell_masses(f.shell)),
+          vertex = {&vertices[1], masses_fixed(1, (double[]){1})};
     const double points[3][3] = {{-1, 0, 0.1}, {0.2, 0.1, 0}, {0.3, 0.9, -0.2}};
-    for (int k = 0; k < 5; k++) { /* at five places */
+    for (int i = 0; i < f.params; i++) f.p[i] = 1 + 0.5 * f.p[i]; /* no mass is 0 */
+    for (int k = 0; k < 5; k++) {                                 /* at five places */
         for (int i = 0; i < f.dofs; i++) f.x[i] = sin(7 * i + k);
-        check_curved(&f, objective_waypoint(centre, points[0], 0.7), false);
-        check_curved(&f, objective_polyline(centre, 3, points, 0.4, 1.3), false);
-        check_curved(&f, objective_polyline(vertex, 3, points, 1e-3, 1.3), false);
-        check_curved(&f, objective_arc(vertex, points, 0.9), false);
+        check_curved(&f, objective_waypoint(&mean, points[0], 0.7), false);
+        check_curved(&f, objective_polyline(&mean, 3, points, 0.4, 1.3), false);
+        check_curved(&f, objective_waypoint(&centre, points[0], 0.7), false);
+        check_curved(&f, objective_polyline(&centre, 3, points, 0.4, 1.3), false);
+        check_curved(&f, objective_arc(&centre, points, 0.9), false);
+        check_curved(&f, objective_polyline(&vertex, 3, points, 1e-3, 1.3), false);
+        check_curved(&f, objective_arc(&vertex, points, 0.9), false);
     }
     for (int i = 0; i < 3; i++) f.x[15 + i] = points[1][i];
-    check_curved(&f, objective_waypoint(vertex, points[1], 0.7), true);
-    check_curved(&f, objective_arc(vertex, points, 0.9), true);
+    check_curved(&f, objective_waypoint(&vertex, points[1], 0.7), true);
+    check_curved(&f, objective_arc(&vertex, points, 0.9), true);
     for (int i = 0; i < 3; i++) f.x[15 + i] = (points[0][i] + points[1][i]) / 2; /* inside a segment */
-    check_curved(&f, objective_polyline(vertex, 3, points, 0.01, 1.3), true);
+    check_curved(&f, objective_polyline(&vertex, 3, points, 0.01, 1.3), true);
+    double at[3];
+    vec3_store(at, probe_at(&centre, f.x, f.p));
+    check_curved(&f, objective_waypoint(&centre, at, 0.7), true);
+    masses_clear(&mean.masses);
+    masses_clear(&vertex.masses);
+    probe_clear(&centre);
     free_fixture(&f);
 }
 
@@ -194,25 +205,27 @@ static void test_curve_distances(void **state)
     (void)state;
     double x[3] = {0.5, 0.25, 0}, one = 1, r = sqrt(0.5);
     int vertex = 0;
-    Probe probe = {1, &vertex, &one};
+    Probe probe = {&vertex, masses_fixed(1, &one)};
     const double corner[3][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}},
                  quarter[3][3] = {{1, 0, 0}, {r, r, 0}, {0, 1, 0}};
-    Objective polyline = objective_polyline(probe, 3, corner, 1e-3, 1),
-              arc = objective_arc(probe, quarter, 1);
-    assert_true(fabs(objective_distance(&polyline, x) - 0.25) < 1e-15);
+    Objective polyline = objective_polyline(&probe, 3, corner, 1e-3, 1),
+              arc = objective_arc(&probe, quarter, 1);
+    assert_true(fabs(objective_distance(&polyline, x, NULL) - 0.25) < 1e-15);
     assert_true(fabs(polyline.ops->value(polyline.self, 1, x, NULL, NULL, NULL) - 0.0625) < 1e-15);
-    assert_true(fabs(objective_distance(&arc, x) - (1 - sqrt(0.3125))) < 1e-14);
+    assert_true(fabs(objective_distance(&arc, x, NULL) - (1 - sqrt(0.3125))) < 1e-14);
     x[0] = 0.5, x[1] = -0.5; /* beyond the arc's start, and of two equal segments */
-    assert_true(fabs(objective_distance(&arc, x) - r) < 1e-14);
+    assert_true(fabs(objective_distance(&arc, x, NULL) - r) < 1e-14);
     x[0] = x[1] = 0, x[2] = 2;
-    assert_true(fabs(objective_distance(&arc, x) - sqrt(5)) < 1e-14);
-    Objective waypoint = objective_waypoint(probe, corner[0], 1);
+    assert_true(fabs(objective_distance(&arc, x, NULL) - sqrt(5)) < 1e-14);
+    Objective waypoint = objective_waypoint(&probe, corner[0], 1);
     Objective height = objective_height(1, &vertex, 1);
-    assert_true(fabs(objective_distance(&waypoint, x) - 2) < 1e-15 && isnan(objective_distance(&height, x)));
+    assert_true(fabs(objective_distance(&waypoint, x, NULL) - 2) < 1e-15 &&
+                isnan(objective_distance(&height, x, NULL)));
     objective_destroy(height);
     objective_destroy(polyline);
     objective_destroy(arc);
     objective_destroy(waypoint);
+    masses_clear(&probe.masses);
 }
 
 enum { CONTROL_STEPS = 9, PAIRS = 2 };

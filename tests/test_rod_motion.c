@@ -85,7 +85,7 @@ static double frequency(Moving *m, int dof, double mean, double dt, int steps)
 static double lowest_frequency(const Resting *o, const Moving *m, double young, double *mode)
 {
     System *sys = rod_system(o->rod, young, false);
-    double lambda, inertia = 0, *mass = mem_alloc((size_t)m->layout.nodes, sizeof *mass);
+    double lambda, inertia = 0;
     State rest = state_clone(&m->now);
     for (int e = o->rod->elements - 1, i = 2; e >= 0;
          e--, i = 2) /* the multipliers of rest: what hangs below */
@@ -94,10 +94,10 @@ static double lowest_frequency(const Resting *o, const Moving *m, double young, 
                                                    (o->rod->elements - e - 0.5);
     Point at = state_point(&rest, o->p);
     assert_true(eigen_lowest(sys, &at, NULL, 1, &lambda, mode));
-    rod_node_mass(o->rod, mass);
-    for (int i = 0; i < 3 * m->layout.nodes; i++) inertia += mass[i / 3] * mode[i] * mode[i];
+    Masses masses = rod_masses(o->rod);
+    for (int i = 0; i < 3 * m->layout.nodes; i++) inertia += masses.fixed[i / 3] * mode[i] * mode[i];
     system_destroy(sys);
-    mem_free(mass);
+    masses_clear(&masses);
     state_destroy(&rest);
     return sqrt(lambda / inertia) / (2 * M_PI);
 }
@@ -212,10 +212,11 @@ static void find_strains(const Rod *rod, Seen *seen, int at, const double *p, do
 {
     const RodCurve *const three[] = {&seen->curves[0], &seen->curves[1], &seen->curves[2]};
     Vec3 inertia[2 * PIECES + 1], drag[2 * PIECES + 1];
-    double *q = mem_copy(p, (size_t)rod->params.size, sizeof *q), mass[PIECES + 1];
+    double *q = mem_copy(p, (size_t)rod->params.size, sizeof *q);
     RodLayout layout = rod_layout(rod, true);
     System *sys = rod_system(rod, 1e6, false);
-    rod_node_mass(rod, mass);
+    Masses masses = rod_masses(rod);
+    const double *mass = masses.fixed;
     rod_inertia(three, seen->times, at, rod_alike(&(RodSection){.mass = 1}), 0, inertia);
     rod_inertia(three, seen->times, at, rod_alike(&(RodSection){.mass = 0}), p[rod->damping], drag);
     for (int i = 0; i <= PIECES; i++)
@@ -224,6 +225,7 @@ static void find_strains(const Rod *rod, Seen *seen, int at, const double *p, do
     rod_balance(rod, sys, &layout, 0, seen->state, q);
     memcpy(strain, q + rod->natural_strain, 3 * PIECES * sizeof *strain);
     system_destroy(sys);
+    masses_clear(&masses);
     mem_free(q);
 }
 

@@ -158,7 +158,7 @@ static void test_weight(void **state)
     const double left[] = {0.3, 0.6};
     Rod *rod = rod_create(N, LENGTH, rod_circle(1e-3, 1, POISSON, 1000), NULL);
     rod_taper(rod, 3e-3, 2e-3, left, POISSON, 1000);
-    double *p = params_vector(&rod->params), mass[N + 1], place[2][3 * (N + 1)], sum = 0, off = 0, exact = 0;
+    double *p = params_vector(&rod->params), place[2][3 * (N + 1)], sum = 0, off = 0, exact = 0;
     rod_default_params(rod, 2e6, p);
     vec3_store(p + rod->gravity, vec3(0, 3, -9));
     for (int k = 0; k < 2; k++) {
@@ -174,8 +174,9 @@ static void test_weight(void **state)
     for (int i = 0; i < 3 * (N + 1); i++) off = fmax(off, fabs(place[1][i] - place[0][i]));
     print_message("with positions and without: %.1e m; the end is at %.3f m\n", off, place[0][3 * N + 2]);
     assert_true(off < 1e-10 && place[0][3 * N + 2] < -0.05);
-    rod_node_mass(rod, mass);
-    for (int i = 0; i <= N; i++) sum += mass[i];
+    Masses masses = rod_masses(rod);
+    for (int i = 0; i <= N; i++) sum += masses.fixed[i];
+    masses_clear(&masses);
     for (int e = 0; e < N; e++)
         exact += 6e-3 * LENGTH / N * (1 - 0.7 * (e + 0.5) / N) * (1 - 0.4 * (e + 0.5) / N);
     assert_near("mass", sum, exact, 1e-14);

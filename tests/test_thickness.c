@@ -344,6 +344,39 @@ static void test_found_in_motion(void **state)
     result_close(result);
 }
 
+/* The centre of mass of a beam that is made thicker where that brings it where it is to be: its probe goes with it. */
+static void test_center(void **state)
+{
+    (void)state;
+    Result *result =
+        run_text(mem_format(FALL, "trajectory", "1 mm",
+                            "probes: {centre: {mass_center: true}}\ndesign:\n  iterations: 12\n"
+                            "  optimizer: gauss_newton\n"
+                            "  unknowns: {thickness: {bounds: [0.5 mm, 2 mm]}}\n"
+                            "  objectives: [{waypoint: {mass_center: true, at: [16 mm, 5 mm, 0]}}]\n"));
+    Array rest = read_all(result, "slender/rest"), faces = read_all(result, "slender/faces"),
+          x = read_all(result, "slender/cases/case1/x"), centre = read_all(result, "slender/probes/centre"),
+          thickness = read_all(result, "slender/design/thickness");
+    const double *at = rest.data, *end = (double *)x.data + 3 * (x.dims[0] - rest.dims[0]),
+                 *seen = (double *)centre.data + 3 * (centre.dims[0] - 1);
+    double sum[3] = {0}, whole = 0, even = 0, area = 0;
+    for (int f = 0; f < faces.dims[0]; f++) {
+        const int *v = (int *)faces.data + 3 * f;
+        const double *a = at + 3 * v[0], *b = at + 3 * v[1], *c = at + 3 * v[2];
+        double twice = fabs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])),
+               mass = ((double *)thickness.data)[f] * twice;
+        whole += mass, area += twice, even += twice * (a[0] + b[0] + c[0]) / 3;
+        for (int i = 0; i < 9; i++) sum[i % 3] += mass * end[3 * v[i / 3] + i % 3] / 3;
+    }
+    print_message("centre of mass at %.2f mm of the beam, %.2f mm were it even\n", 1e3 * seen[0],
+                  1e3 * even / area);
+    for (int i = 0; i < 3; i++) assert_true(fabs(sum[i] / whole - seen[i]) < 1e-14);
+    assert_true(even / area - seen[0] > 1e-3);
+    Array *all[] = {&rest, &faces, &x, &centre, &thickness};
+    for (int k = 0; k < 5; k++) array_clear(all[k]);
+    result_close(result);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -351,6 +384,7 @@ int main(void)
         cmocka_unit_test(test_stretched),    cmocka_unit_test(test_mass),
         cmocka_unit_test(test_frequency),    cmocka_unit_test(test_found),
         cmocka_unit_test(test_taper),        cmocka_unit_test(test_found_in_motion),
+        cmocka_unit_test(test_center),
     };
     return cmocka_run_group_tests(tests, NULL, remove_run);
 }

@@ -10,13 +10,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { STEPS = 12, ROWS = STEPS };
+enum { STEPS = 12, GOALS = 4 };
 
 typedef struct Fixture {
     Shell *shell;
     Design design;
     Control control;
-    Objective objectives[3];
+    Objective objectives[GOALS];
     TrajectoryProblem problem;
     TrajectoryDef def;
     State start;
@@ -133,8 +133,12 @@ static void make(Fixture *f, BendingModel bending, Ground ground, ControlKind ki
     f->objectives[0].first = 4, f->objectives[0].last = STEPS;
     f->objectives[1] = objective_target(2, others, goals, 2e4);
     f->objectives[1].first = f->objectives[1].last = 7;
-    f->objectives[2] = objective_height(1, &tip, -3);
-    f->objectives[2].first = f->objectives[2].last = STEPS;
+    Probe center = probe_center(shell_masses(f->shell));
+    f->objectives[2] = objective_waypoint(&center, goals[1], 3e4);
+    f->objectives[2].first = 5, f->objectives[2].last = STEPS;
+    probe_clear(&center);
+    f->objectives[3] = objective_height(1, &tip, -3);
+    f->objectives[3].first = f->objectives[3].last = STEPS;
     if (moving) f->def.march.move = shake, f->def.march.self = f->shell;
     f->problem = (TrajectoryProblem){.sys = sys,
                                      .design = &f->design,
@@ -142,7 +146,7 @@ static void make(Fixture *f, BendingModel bending, Ground ground, ControlKind ki
                                      .controls = &f->control,
                                      .objectives = f->objectives,
                                      .control_count = 1,
-                                     .objective_count = 3,
+                                     .objective_count = GOALS,
                                      .start = &f->start,
                                      .step = 1e-3,
                                      .steps = STEPS,
@@ -151,7 +155,7 @@ static void make(Fixture *f, BendingModel bending, Ground ground, ControlKind ki
 
 static void clear(Fixture *f)
 {
-    for (int k = 0; k < 3; k++) objective_destroy(f->objectives[k]);
+    for (int k = 0; k < GOALS; k++) objective_destroy(f->objectives[k]);
     system_destroy(f->problem.sys);
     mem_free(f->problem.p);
     design_clear(&f->design);
@@ -172,18 +176,23 @@ static double dot(int n, const double *a, const double *b)
 static double by_tangent(Fixture *f, Trajectory *t)
 {
     int dofs = shell_dof_count(f->shell);
-    size_t all = (size_t)(STEPS + 1) * (size_t)dofs;
-    double *dx = mem_alloc(all, sizeof *dx), *seed = mem_alloc((size_t)dofs, sizeof *seed), sum = 0;
+    size_t all = (size_t)(STEPS + 1) * (size_t)dofs, params = (size_t)f->shell->params.size;
+    double *dx = mem_alloc(all, sizeof *dx), *seed = mem_alloc((size_t)dofs, sizeof *seed), sum = 0,
+           *dp = mem_alloc(params, sizeof *dp), *gp = mem_alloc(params, sizeof *gp);
     trajectory_tangent(t, f->v, dx);
-    for (int k = 0; k < 3; k++)
+    design_forward(&f->design, 0, f->u, f->v, dp);
+    for (int k = 0; k < GOALS; k++)
         for (int n = f->objectives[k].first; n <= f->objectives[k].last; n++) {
             memset(seed, 0, (size_t)dofs * sizeof *seed);
             f->objectives[k].ops->value(f->objectives[k].self, f->objectives[k].weight,
-                                        trajectory_frame(t, n).x, trajectory_params(t, n), seed, NULL);
+                                        trajectory_frame(t, n).x, trajectory_params(t, n), seed, gp);
             sum += dot(dofs, seed, dx + (size_t)n * (size_t)dofs);
         }
+    sum += dot((int)params, gp, dp);
     mem_free(dx);
     mem_free(seed);
+    mem_free(dp);
+    mem_free(gp);
     return sum;
 }
 
@@ -329,11 +338,12 @@ static void test_product(void **state)
     Fixture f;
     TrajectoryInfo info;
     make(&f, BENDING_HINGE, NO_GROUND, CONTROL_FRAME, false);
-    f.problem.objective_count = 2;
+    f.problem.objective_count = 3;
     Trajectory *t = trajectory_create(&f.problem, &f.def);
     int dofs = shell_dof_count(f.shell), tip = mesh_group(f.shell->mesh, "tip", 0)->members[0];
     double *dx = mem_alloc((size_t)(STEPS + 1) * (size_t)dofs, sizeof *dx),
-           *out = mem_alloc((size_t)f.design.size, sizeof *out);
+           *out = mem_alloc((size_t)f.design.size, sizeof *out),
+           *dp = mem_alloc((size_t)f.shell->params.size, sizeof *dp);
     assert_true(isfinite(trajectory_evaluate(t, f.u, f.gradient, &info)));
     trajectory_accept(t);
     trajectory_product(t, f.v, out);
@@ -343,7 +353,15 @@ static void test_product(void **state)
         for (int n = 4; n <= STEPS; n++) expected += 2e4 * pow(dx[n * dofs + 3 * tip + i], 2);
         expected += 4e4 * (pow(dx[7 * dofs + 3 * tip + i], 2) + pow(dx[7 * dofs + 9 + i], 2));
     }
+    Probe center = probe_center(shell_masses(f.shell));
+    design_forward(&f.design, 0, f.u, f.v, dp);
+    for (int n = 5; n <= STEPS; n++) {
+        Vec3 dq = probe_change(&center, trajectory_frame(t, n).x, trajectory_params(t, n), dx + n * dofs, dp);
+        expected += 6e4 * vec3_dot(dq, dq);
+    }
     assert_true(fabs(dot(f.design.size, out, f.v) - expected) < 1e-10 * expected);
+    probe_clear(&center);
+    mem_free(dp);
     mem_free(dx);
     mem_free(out);
     trajectory_destroy(t);

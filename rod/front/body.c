@@ -355,10 +355,9 @@ static bool select_part(const Model *model, const Build *b, const char *at, cons
 
 static const Likeness likeness[] = {{"rod/s", "a rod of another length, or of other elements"}, {0}};
 
-static void masses(const Model *model, const double *p, double *mass)
+static Masses masses(const Model *model)
 {
-    (void)p;
-    rod_node_mass(((const RodModel *)model->self)->rod, mass);
+    return rod_masses(((const RodModel *)model->self)->rod);
 }
 
 /* In parts of an element's stiffness: what is less is rounding of the rotations. */

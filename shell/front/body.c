@@ -140,9 +140,9 @@ static int row_dim(const Model *model, const ParamBlock *block)
     return block->offset == ((const Shell *)model->self)->fold ? 1 : 2;
 }
 
-static void masses(const Model *model, const double *p, double *mass)
+static Masses masses(const Model *model)
 {
-    shell_vertex_mass(model->self, p, mass);
+    return shell_masses(model->self);
 }
 
 static Objective smoothness(const Model *model, const ParamBlock *block, double weight)

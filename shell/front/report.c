@@ -8,8 +8,7 @@
 #include <string.h>
 
 static const double LARGE_BODY = 2;       /* m: most likely a mesh in millimetres          */
-static const double CRUSHED = 0.05;       /* of its area: less is none                      */
-static const double NEARLY_CRUSHED = 0.2; /* .. where no next state was found              */
+static const double NEARLY_CRUSHED = 0.2; /* of a face's area, where no next state was found */
 static const double CELLS_PER_LENGTH = 3; /* of the magnetic bending length, at least      */
 
 /* Over a length h sqrt(Y/(12 M B)) a field bends the sheet by about a radian: cells must be smaller. */
@@ -107,7 +106,17 @@ static double area_ratio(const Mesh *mesh, const double *x, int face)
     return vec3_length(vec3_cross(b, c)) / (2 * mesh->rest_area[face]);
 }
 
-/* St. Venant-Kirchhoff stretching resists being crushed less and less, and halved steps do not help. Of neo-Hookean, which
+static char *strength(const Shell *shell, const Snapshot *shot, int face)
+{
+    double M = vec3_length(vec3_load(shot->p + shell->magnetization + 3 * face)),
+           B = vec3_length(vec3_load(shot->p + shell->flux.uniform)), Y = shot->p[shell->young + face];
+    if (M * B == 0) return mem_format("is too strong for its Young's modulus of %.3g Pa", Y);
+    return mem_format("(a magnetisation of %.3g A/m in a field of %.3g T is %.3g Pa) is too strong for its "
+                      "Young's modulus of %.3g Pa",
+                      M, B, M * B, Y);
+}
+
+/* St. Venant-Kirchhoff stretching resists being crushed less and less: halved steps lead only near it. Of neo-Hookean, which
  * resists it more and more, a state with small faces is one like others. */
 char *shell_crushed(const Model *model, const Snapshot *shot, bool failed)
 {
@@ -116,20 +125,16 @@ char *shell_crushed(const Model *model, const Snapshot *shot, bool failed)
     int least = 0;
     for (int f = 1; f < mesh->face_count; f++)
         if (area_ratio(mesh, shot->at.x, f) < area_ratio(mesh, shot->at.x, least)) least = f;
-    double ratio = area_ratio(mesh, shot->at.x, least),
-           limit = shell->material == MEMBRANE_ST_VENANT_KIRCHHOFF ? CRUSHED : 0;
-    if (!(ratio < (failed ? NEARLY_CRUSHED : limit))) return NULL;
-    double M = vec3_length(vec3_load(shot->p + shell->magnetization + 3 * least)),
-           B = vec3_length(vec3_load(shot->p + shell->flux.uniform)), Y = shot->p[shell->young + least];
-    if (M * B == 0)
-        return mem_format(
-            "face %d is crushed to %.2g of its area: what acts on it is too strong for its Young's "
-            "modulus of %.3g Pa",
-            least, ratio, Y);
-    return mem_format(
-        "face %d is crushed to %.2g of its area: what acts on it (a magnetisation of %.3g A/m in a "
-        "field of %.3g T is %.3g Pa) is too strong for its Young's modulus of %.3g Pa",
-        least, ratio, M, B, M * B, Y);
+    double ratio = area_ratio(mesh, shot->at.x, least);
+    bool next = failed && (ratio < NEARLY_CRUSHED || shot->status == NEWTON_TANGLED);
+    if (!next && !membrane_is_crushed(shell->material, ratio)) return NULL;
+    char *what = mem_format(ratio < NEARLY_CRUSHED
+                                ? "face %d is crushed to %.2g of its area"
+                                : "next, a face would be crushed; face %d has the least of its area, %.2g",
+                            least, ratio);
+    char *why = strength(shell, shot, least), *text = mem_join(what, ": what acts on it ", why);
+    mem_free(why);
+    return text;
 }
 
 /* An edge's length, or a radian. */

@@ -149,10 +149,9 @@ static const bool *rows_on(const Model *model, const ParamBlock *block)
     return row_dim(model, block) == 2 ? ((const Solid *)model->self)->skin_on : NULL;
 }
 
-static void masses(const Model *model, const double *p, double *mass)
+static Masses masses(const Model *model)
 {
-    (void)p;
-    solid_node_mass(model->self, mass);
+    return solid_masses(model->self);
 }
 
 /* ---- The row ---- */
