@@ -13,8 +13,8 @@ static Around cells_around(const Samples *cells, int vertex_count)
     int corners = cells->count * cells->corners;
     Around around = {mem_alloc((size_t)vertex_count + 2, sizeof(int)),
                      mem_alloc((size_t)corners, sizeof(int))};
-    int *next = around.first +
-                1; /* where the next cell of a vertex goes; at last where those of the next vertex begin */
+    /* Where the next cell of a vertex goes; at last where those of the next vertex begin. */
+    int *next = around.first + 1;
     for (int i = 0; i < corners; i++) next[cells->vertices[i] + 1]++;
     for (int v = 0; v < vertex_count; v++) next[v + 1] += next[v];
     for (int i = 0; i < corners; i++) around.cell[next[cells->vertices[i]]++] = i / cells->corners;
