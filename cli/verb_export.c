@@ -351,7 +351,7 @@ int verb_export(int argc, char **argv)
         "FILE_1.gcode, ..\n"
         "       slender export NAME.run -o NAME.vtkhdf              the result of a running or interrupted "
         "job\n"
-        "       --force replaces files of these names that slender has not made; .csv, .gcode and .hpgl are "
+        "  --force    replaces files of these names that slender has not made; .csv, .gcode and .hpgl are "
         "replaced "
         "without";
     Export what = {.how = {.frame = -1}};

@@ -42,9 +42,9 @@ static bool write_mesh(const Mesh *mesh, const char *path, Error *err)
 
 int verb_mesh(int argc, char **argv)
 {
-    static const char usage[] =
-        "mesh SCENE [-o FILE.obj] [--force]\n  Writes the scene's mesh, generated or read, as OBJ with its "
-        "groups; --force replaces a file of\n  that name that slender has not made.";
+    static const char usage[] = "mesh SCENE [-o FILE.obj] [--force]\n"
+                                "  --force    replaces a file of that name that slender has not made\n"
+                                "  Writes the scene's mesh, generated or read, as OBJ with its groups.";
     const char *output = NULL, *scene_path;
     bool force = false;
     int code;

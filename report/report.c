@@ -161,10 +161,9 @@ static bool add_result(Document *document, ShowData *data, ShowDef *show, const 
     find_origin(&part);
     add_frames(&part);
     if (!is_shown(data)) return error_set(err, "there is no body and no drawing in it: nothing to show");
-    bool ok = drawn_has(data->result)
-                  ? report_drawing(&part, err)
-                  : result_check_state(data->result, err) && report_body(&part, err) &&
-                        report_curves(&part, err) && report_surroundings(&part, err);
+    bool ok = drawn_has(data->result) ? report_drawing(&part, err)
+                                      : result_check_state(data->result, err) && report_body(&part, err) &&
+                                            report_curves(&part, err) && report_surroundings(&part, err);
     if (ok) report_flux(&part);
     ok = ok && report_charts(&part, err) && report_facts(&part, err);
     if (ok) document_close(document);

@@ -303,10 +303,11 @@ bool membrane_is_crushed(MembraneMaterial material, double area)
     return material == MEMBRANE_ST_VENANT_KIRCHHOFF && area < CRUSHED;
 }
 
-/* A crushed face may be at rest, and next to it no energy grows. */
+/* A crushed face may be at rest, and next to it no energy grows. In a motion its inertia takes it through that. */
 static bool membrane_tangles(const void *self, const Point *at)
 {
     const Membrane *membrane = self;
+    if (at->x_prev) return false;
     for (int pack = 0; pack < pack_count(membrane->layer.count); pack++) {
         Pack x[9];
         Pack3 f0, f1;

@@ -55,7 +55,7 @@ static void test_cases(void **state)
     assert_true(all[0] > 100 && all[1] > 100);
     assert_true(up[0] > 100 && up[1] == 0);     /* one case alone has the first colour */
     assert_true(side[0] > 100 && side[1] == 0); /* .. and its own target, a line       */
-    assert_true(up[2] > 50 && side[2] > 3 * up[2] && all[2] > side[2] + 20);
+    assert_true(up[2] > 50 && side[2] > 3 * up[2] && all[2] > 3 * up[2]);
     ShowDef def = show_default();
     def.only = "down";
     Error err;

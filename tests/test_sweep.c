@@ -291,9 +291,8 @@ static void test_rows(void **state)
         int width = arrays[k].width, last = width * (arrays[k].rows - 1);
         if (!cells_read(result, arrays[k].path, &cells, &err)) fail_msg("%s", err.text);
         assert_int_equal(array_count(&all), last + width);
-        assert_int_equal(cells.width, width);
-        for (int i = 0; i < width; i++)
-            assert_true(cells.numbers[i] == ((const double *)all.data)[last + i]);
+        assert_int_equal(cells_count(&cells), width);
+        for (int i = 0; i < width; i++) assert_true(cells.numbers[i] == ((const double *)all.data)[last + i]);
         cells_clear(&cells);
         array_clear(&all);
         mem_free(path);

@@ -61,11 +61,17 @@ static bool has_line(const RodPage *page, const double (*target)[3])
     return i < count;
 }
 
+/* "target", of one of several cases "target, NAME". */
+static const char *state_words(RodPage *page, const char *word, const ShowCurvesState *state)
+{
+    return state->name ? show_text(page->data, "%s, %s", word, state->name) : word;
+}
+
 /* Of a state's target, what is no line of it: points whose neighbours have no place. Where there is a line, it is what the legend
  * names. */
 static void add_alone(RodPage *page, const ShowCurvesState *state)
 {
-    const char *name = has_line(page, state->target) ? NULL : "target";
+    const char *name = has_line(page, state->target) ? NULL : state_words(page, "target", state);
     int count = page->curves.point_count, alone = 0;
     MarkDot *places = show_block(page->data, (size_t)count, sizeof *places);
     for (int i = 0; i < count; i++) {
@@ -102,12 +108,6 @@ static CurvesSet *add_set(RodPage *page, const char *name, const double (*points
                                     .color = color,
                                     .width = 1.6};
     return &page->sets[count];
-}
-
-/* "target", of one of several cases "target, NAME". */
-static const char *state_words(RodPage *page, const char *word, const ShowCurvesState *state)
-{
-    return state->name ? show_text(page->data, "%s, %s", word, state->name) : word;
 }
 
 static void add_target(RodPage *page, const ShowCurvesState *state)
