@@ -167,13 +167,13 @@ static bool take(Builder *b, const yaml_event_t *event)
     }
 }
 
-/* Does a tab stand where that line is indented? */
+/* Does a tab stand where that line is indented? Of no text (NULL) the length is 0. */
 static bool has_tab(const char *text, size_t length, size_t line)
 {
-    const char *end = text + length;
-    for (; line > 0 && text; line--) text = memchr(text, '\n', (size_t)(end - text)), text += text != NULL;
-    while (text && text < end && *text == ' ') text++;
-    return text && text < end && *text == '\t';
+    size_t at = 0;
+    while (at < length && line > 0) line -= text[at++] == '\n';
+    while (at < length && text[at] == ' ') at++;
+    return at < length && text[at] == '\t';
 }
 
 static void syntax_error(YamlFile *file, const yaml_parser_t *parser, const char *text, size_t length)

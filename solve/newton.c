@@ -346,12 +346,14 @@ static bool is_astray(const Search *s)
            s->least_force[1] > ASTRAY_PART * s->least_force[0];
 }
 
-/* Where a body is inside out, or flat, its energy may well be stationary, but it is no equilibrium of such a body. */
+/* Where a body is inside out, or flat, its energy may well be stationary, or have no way down, but it is no equilibrium of
+ * such a body. */
 static bool ends_tangled(const Search *s)
 {
     NewtonStatus status = s->info.status;
-    bool stationary = status == NEWTON_CONVERGED || status == NEWTON_SADDLE || status == NEWTON_NEUTRAL;
-    return stationary && system_tangles(s->sys, &s->at);
+    bool ended = status == NEWTON_CONVERGED || status == NEWTON_SADDLE || status == NEWTON_NEUTRAL ||
+                 status == NEWTON_STALLED;
+    return ended && system_tangles(s->sys, &s->at);
 }
 
 static NewtonInfo minimize(System *sys, const NewtonDef *def, const Point *at, State *state,
