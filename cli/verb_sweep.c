@@ -121,13 +121,29 @@ static void print_problems(const Problems *problems)
     if (problems->count > SHOWN) say(stderr, "and %d more", problems->count - SHOWN);
 }
 
-/* Tables of those names are this sweep's where its folder is there. */
+/* Does NAME.csv begin as the sweep's table does? */
+static bool has_table(const Sweep *sweep)
+{
+    char *path = mem_format("%s.csv", sweep->name), *head = mem_format("run,%s", sweep->keys[0].name);
+    size_t length = strlen(head);
+    char *found = mem_alloc(length + 1, 1);
+    FILE *file = fopen(path, "r");
+    bool has = file && fread(found, 1, length, file) == length && !memcmp(found, head, length);
+    if (file) fclose(file);
+    mem_free(found);
+    mem_free(head);
+    mem_free(path);
+    return has;
+}
+
+/* Tables of those names are this sweep's where its folder is there, and runs in it or the table of none. */
 static bool check_tables(const Sweep *sweep, Error *err)
 {
     static const char *const endings[] = {".csv", ".h5"};
     struct stat info;
-    bool ok = true, begun = stat(sweep->name, &info) == 0;
-    if (begun && !S_ISDIR(info.st_mode))
+    bool ok = true, folder = stat(sweep->name, &info) == 0,
+         begun = folder && (state_has_runs(sweep) || has_table(sweep));
+    if (folder && !S_ISDIR(info.st_mode))
         return error_set(
             err, "'%s' is a file, and the results go to a folder of this name; give another one with -o",
             sweep->name);

@@ -110,6 +110,19 @@ char *state_word(const RunState *state, const Sweep *sweep, int run)
     return mem_text(state->record == RECORD_UNFINISHED ? "interrupted" : "absent");
 }
 
+bool state_has_runs(const Sweep *sweep)
+{
+    static const char *const endings[] = {".end", ".lock", ".run", ".vtkhdf"};
+    bool has = false;
+    for (int run = 0; run < sweep->run_count && !has; run++)
+        for (size_t k = 0; k < sizeof endings / sizeof *endings && !has; k++) {
+            char *path = file_of(sweep, run, endings[k]);
+            has = access(path, F_OK) == 0;
+            mem_free(path);
+        }
+    return has;
+}
+
 bool state_make_folder(const Sweep *sweep, Error *err)
 {
     return mkdir(sweep->name, 0777) == 0 || errno == EEXIST ||

@@ -33,7 +33,10 @@ const char *state_look(const Sweep *sweep, int run, bool retry, bool force, RunS
  * frees. */
 char *state_word(const RunState *state, const Sweep *sweep, int run);
 
-/* The folder of the results, by which tables of its name are the sweep's own: made where it is not there. */
+/* Has any run left something in the sweep's folder? */
+bool state_has_runs(const Sweep *sweep);
+
+/* The folder of the results: made where it is not there. */
 bool state_make_folder(const Sweep *sweep, Error *err);
 
 /* The run begins: it has not ended. It has, with a code, and these words (NULL: none). */

@@ -239,6 +239,13 @@ static bool is_within(const char *one, const char *other)
     return !strncmp(one, other, length) && other[length] == '/';
 }
 
+/* Are the columns of one of them, "tip.x" or "steps[4]", called like the other one? */
+static bool is_part(const char *one, const char *other)
+{
+    size_t length = strlen(one);
+    return !strncmp(one, other, length) && (other[length] == '.' || other[length] == '[');
+}
+
 /* Does the table have a column of that name without it? */
 static bool is_column(const Sweep *sweep, const char *path)
 {
@@ -254,15 +261,21 @@ static bool check_path(const Sweep *sweep, YamlFile *file, const SweepScene *sai
     if (!is_path(path))
         return yaml_refuse(file, key, "'%s' is no path in a result; it is like final/energy/bending", path);
     if (is_column(sweep, path)) return yaml_refuse(file, key, "the table has a column %s of its own", path);
-    for (int k = 0; k < said->collect_count; k++)
-        if (is_within(said->collect[k], path) || is_within(path, said->collect[k]))
-            return yaml_refuse(file, key, "one of %s and %s is no dataset", said->collect[k], path);
+    for (int k = 0; k < said->collect_count; k++) {
+        const char *other = said->collect[k];
+        if (is_within(other, path) || is_within(path, other))
+            return yaml_refuse(file, key, "one of %s and %s is no dataset", other, path);
+        if (is_part(other, path)) return yaml_refuse(file, key, "%s is a column of %s already", path, other);
+    }
     return true;
 }
 
 static bool check_paths(const Sweep *sweep, YamlFile *file, const SweepScene *said)
 {
     bool ok = !said->best || check_path(sweep, file, said, said->best->of, "best.of");
+    if (ok && said->best && !strcmp(said->best->of, "status"))
+        ok = yaml_refuse(file, "best.of",
+                         "the status of a run is no number; the best is one of the solutions");
     for (int k = 0; k < said->collect_count; k++) {
         char *key = mem_format("collect[%d]", k);
         ok = check_path(sweep, file, said, said->collect[k], key) && ok;

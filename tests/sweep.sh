@@ -26,6 +26,9 @@ sweep early 'vary: {shell.thickness: [1 mm]}
 best: {of: final/energy/bending}'
 expect 0 "$program" sweep early.yaml --collect; is early "$(column status early.csv)" absent
 expect 0 "$program" sweep early.yaml --quiet; is later "$(column status early.csv)" converged
+sweep theirs 'vary: {shell.thickness: [1 mm]}'
+mkdir theirs; echo raw > theirs/raw.txt; echo a,b > theirs.csv
+expect 4 "$program" sweep theirs.yaml; says "'theirs.csv' is there, and no table of this sweep"; is theirs "$(cat theirs.csv)" a,b
 
 # ---- What has too many numbers for columns is in NAME.h5, each run's in its rows ----
 sweep wide 'vary: {shell.mesh.cells: [[4, 1], [12, 1]]}
@@ -187,6 +190,10 @@ refused "no.yaml:4:7: best.of: 'x/' is no path in a result" 'vary: {shell.young:
 best: x/'
 refused "no.yaml:4:18: collect.1.: one of final and final/energy is no dataset" 'vary: {shell.young: [1 MPa]}
 collect: [final, final/energy]'
+refused "no.yaml:4:23: collect.1.: probes/tip.x is a column of probes/tip already" 'vary: {shell.young: [1 MPa]}
+collect: [probes/tip, probes/tip.x]'
+refused "no.yaml:4:7: best.of: the status of a run is no number" 'vary: {shell.young: [1 MPa]}
+best: status'
 refused "nothing is varied" 'collect: [status]'
 refused "all keys must have as many values, and shell.young has 2, shell.thickness 1" 'vary: {zip: true, shell.young: [1, 2], shell.thickness: [1]}'
 refused "must be a list of entries, not a number" 'vary: {shell.young: 1 MPa}'
