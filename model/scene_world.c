@@ -172,8 +172,8 @@ bool self_contact_is_asked(const SelfContactScene *self)
 AUTO_TABLE(
     contact_stiffness, "stiffness of contact", "N/m", "(0, inf)",
     "How much an obstacle resists to be entered.",
-    "from the body, so that what rests or is pressed sinks in by less than 1 % of the thickness, or of a "
-    "rod's radius",
+    "from the body as it is at the start, so that what rests or is pressed sinks in by less than 1 % of the "
+    "thickness, or of a rod's radius; derivatives by an unknown thickness leave it as it is",
     "per contact point");
 AUTO_TABLE(contact_offset, "offset of contact", "m", "[0, inf)",
            "How far from an obstacle the body's middle surface or line stays.",
