@@ -106,11 +106,16 @@ static bool is_own(const Kind *kind, const char *path)
     return own;
 }
 
-bool mark_check(const char *path, bool force, Error *err)
+bool mark_is_foreign(const char *path)
 {
     const Kind *kind = kind_of(path);
+    return kind && !is_own(kind, path);
+}
+
+bool mark_check(const char *path, bool force, Error *err)
+{
     if (!replace_check(path, err)) return false;
-    return force || !kind || is_own(kind, path) ||
+    return force || !mark_is_foreign(path) ||
            error_set(err,
                      "'%s' is there, and slender has not made it: give another name, or replace it with "
                      "--force",

@@ -21,6 +21,9 @@
 enum { MARK_PNG_END = 12 };
 unsigned char *mark_png_chunk(size_t *size);
 
-/* replace_check, and false and a sentence where there is a file of a kind that bears the mark, and it bears none or
- * cannot be read; an empty one is nobody's. By force all may be replaced. Endings are those of any case. */
+/* Is there a file of a kind that bears the mark, and it bears none or cannot be read? An empty one is nobody's. Endings are
+ * those of any case. */
+bool mark_is_foreign(const char *path);
+
+/* replace_check, and false and a sentence where it is foreign; by force all may be replaced. */
 bool mark_check(const char *path, bool force, Error *err);
