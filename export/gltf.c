@@ -1,5 +1,6 @@
 #include "export/gltf.h"
 #include "base/memory.h"
+#include "io/mark.h"
 #include <math.h>
 #include <string.h>
 
@@ -115,10 +116,8 @@ static void add_list(Text *json, const char *name, const GltfList *list)
 
 static void add_json(const Gltf *gltf, Text *json)
 {
-    text_add(json,
-             "{\"asset\":{\"version\":\"2.0\",\"generator\":\"slender %s\"},\n\"scene\":0,"
-             "\"scenes\":[{\"nodes\":[0]}]",
-             SLENDER_VERSION);
+    text_add(json, "{\"asset\":{\"version\":\"2.0\"," MARK_GLB(
+                       SLENDER_VERSION) "},\n\"scene\":0,\"scenes\":[{\"nodes\":[0]}]");
     text_add(json, ",\n\"buffers\":[{\"byteLength\":%zu}]", gltf->buffer.size);
     add_list(json, "bufferViews", &gltf->views);
     add_list(json, "accessors", &gltf->accessors);

@@ -189,7 +189,7 @@ static void add_vector(Bytes *file, Vec3 v)
 
 void parts_write_stl(const Part *part, Bytes *file)
 {
-    char header[80] = MARK_TEXT ", lengths in mm"; /* must not begin with "solid": that is the other format */
+    char header[80] = MARK_STL(SLENDER_VERSION); /* must not begin with "solid": that is the other format */
     bytes_add(file, header, sizeof header);
     bytes_add_u32(file, (uint32_t)part->face_count);
     for (int f = 0; f < part->face_count; f++) {

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "export/export.h"
 #include "export/mesh.h"
+#include "io/mark.h"
 #include "io/text.h"
 #include <math.h>
 #include <string.h>
@@ -95,8 +96,7 @@ static void write_file(const Ply *ply, Bytes *file)
 {
     const MeshFile *mesh = &ply->mesh;
     Text header = {0};
-    text_add(&header, "ply\nformat binary_little_endian 1.0\ncomment slender %s, lengths in metres\n",
-             SLENDER_VERSION);
+    text_add(&header, "ply\nformat binary_little_endian 1.0\n" MARK_PLY(SLENDER_VERSION));
     text_add(&header, "element vertex %d\nproperty double x\nproperty double y\nproperty double z\n",
              mesh->vertex_count);
     add_properties(&header, ply->points, ply->point_field_count);

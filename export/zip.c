@@ -71,7 +71,7 @@ bool zip_add(Zip *zip, const char *name, const void *data, size_t size, Error *e
 
 void zip_end(Zip *zip)
 {
-    static const char comment[] = MARK_TEXT;
+    static const char comment[] = MARK_ZIP(SLENDER_VERSION);
     uint32_t start = (uint32_t)zip->file->size;
     bytes_add(zip->file, zip->entries.data, zip->entries.size);
     bytes_add(zip->file, "PK\5\6", 4);

@@ -162,7 +162,7 @@ static void add_mark(Bytes *file, Format format)
 {
     static const size_t ends[FORMAT_COUNT] = {MARK_PNG_END, sizeof "</svg>\n" - 1, sizeof "%%EOF\n" - 1};
     static const char *const comments[FORMAT_COUNT] = {
-        [FORMAT_SVG] = "<!-- " MARK_TEXT " -->\n", [FORMAT_PDF] = "% " MARK_TEXT "\n"};
+        [FORMAT_SVG] = MARK_SVG(SLENDER_VERSION), [FORMAT_PDF] = MARK_PDF(SLENDER_VERSION)};
     unsigned char end[MARK_PNG_END], *chunk = NULL;
     size_t size = 0;
     if (format == FORMAT_PNG) chunk = mark_png_chunk(&size);

@@ -141,7 +141,7 @@ static void write_groups(Text *text, const MeshFile *mesh)
 bool mesh_file_write_obj(const char *path, const MeshFile *mesh, Error *err)
 {
     Text text = {0};
-    text_add(&text, "# " MARK_TEXT "\n");
+    text_add(&text, MARK_OBJ(SLENDER_VERSION));
     for (int v = 0; v < mesh->vertex_count; v++)
         text_add(&text, "v %.17g %.17g %.17g\n", mesh->vertices[v][0], mesh->vertices[v][1],
                  mesh->vertices[v][2]);

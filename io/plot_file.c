@@ -94,7 +94,7 @@ bool plot_write_svg(const char *path, const Plot *plot, Error *err)
     text_add(&text, ">\n");
     for (int k = 0; k < plot->layer_count; k++)
         if (plot->layers[k].count) add_layer(&text, &plot->layers[k], k + 1);
-    text_add(&text, "<metadata>" MARK_TEXT "</metadata>\n</svg>\n");
+    text_add(&text, MARK_SVG(SLENDER_VERSION) "</svg>\n");
     bool ok = safe_file_write(path, text.text, text.length, false, err);
     mem_free(width.text);
     mem_free(height.text);

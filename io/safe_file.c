@@ -16,7 +16,7 @@
 
 enum { TRAILER = 20 };
 
-static const char MARK[8] = "SLENDRCK";
+static const char MARK[8] = SAFE_FILE_MARK;
 
 static void make_trailer(const void *bytes, size_t size, unsigned char trailer[TRAILER])
 {

@@ -7,6 +7,8 @@
 #include "base/error.h"
 #include <stddef.h>
 
+#define SAFE_FILE_MARK "SLENDRCK"
+
 /* Replaces the file, if replace_check allows it. On false the old one is still there. */
 bool safe_file_write(const char *path, const void *bytes, size_t size, bool checked, Error *err);
 

@@ -1,6 +1,7 @@
 #include "job/outputs.h"
 #include "base/memory.h"
 #include "io/canvas.h"
+#include "io/mark.h"
 #include "io/path.h"
 #include "io/replace.h"
 #include "io/safe_file.h"
@@ -219,49 +220,73 @@ static void visit_iterations(const char *base, bool (*visit)(void *self, const c
     mem_free(folder);
 }
 
+typedef bool CheckFile(const char *path, const char *result, Error *err);
+
 static bool check_new(const char *path, const char *result, Error *err)
 {
-    return !path || access(path, F_OK) != 0 ||
+    return access(path, F_OK) != 0 ||
            error_set(err,
                      "'%s' is there, and no '%s' that it would belong to: give another name, or replace it "
                      "with --force",
                      path, result);
 }
 
-/* Are they new? */
-typedef struct NewIterations {
+static bool check_mark(const char *path, const char *result, Error *err)
+{
+    (void)result;
+    return mark_check(path, false, err);
+}
+
+/* --force would discard the run. */
+static bool check_mark_resumed(const char *path, const char *result, Error *err)
+{
+    (void)result;
+    return !mark_is_foreign(path) ||
+           error_set(err, "'%s' is there, and slender has not made it: move it, then go on with --resume",
+                     path);
+}
+
+typedef struct Checking {
+    CheckFile *check;
     const char *result;
     bool ok;
     Error *err;
-} NewIterations;
+} Checking;
 
-static bool check_new_iteration(void *self, const char *path)
+static bool check_drawn_file(void *self, const char *path)
 {
-    NewIterations *new = self;
-    return new->ok = check_new(path, new->result, new->err);
+    Checking *c = self;
+    return c->ok = c->check(path, c->result, c->err);
 }
 
-static bool check_new_iterations(const char *result, Error *err)
+/* The files that the scene names, and drawings of iterations. */
+static bool check_drawn(const Scene *scene, const char *result, bool picture, CheckFile *check, Error *err)
 {
-    NewIterations new = {result, true, err};
+    OutputFile files[FILES];
+    Checking checking = {check, result, true, err};
     char *base = path_without_ending(result, ".vtkhdf");
-    visit_iterations(base, check_new_iteration, &new);
+    files_of(scene, result, files);
+    for (int k = picture ? 0 : 1; checking.ok && k < FILES; k++)
+        if (files[k].path) check_drawn_file(&checking, files[k].path);
+    if (checking.ok && makes_iterations(scene)) visit_iterations(base, check_drawn_file, &checking);
+    clear_files(files);
     mem_free(base);
-    return new.ok;
+    return checking.ok;
 }
 
 bool outputs_check_new(const Scene *scene, const char *result, bool picture, Error *err)
 {
-    OutputFile files[FILES];
     char *table = path_of(result, NULL, PROBE_TABLE), *sidecar = path_of(result, NULL, ".xdmf");
-    files_of(scene, result, files);
-    bool ok = (!scene->probes_count || check_new(table, result, err)) && check_new(sidecar, result, err);
-    for (int k = picture ? 0 : 1; k < FILES; k++) ok = ok && check_new(files[k].path, result, err);
-    ok = ok && (!makes_iterations(scene) || check_new_iterations(result, err));
-    clear_files(files);
+    bool ok = (!scene->probes_count || check_new(table, result, err)) && check_new(sidecar, result, err) &&
+              check_drawn(scene, result, picture, check_new, err);
     mem_free(table);
     mem_free(sidecar);
     return ok;
+}
+
+bool outputs_check_marks(const Scene *scene, const char *result, bool picture, bool resumed, Error *err)
+{
+    return check_drawn(scene, result, picture, resumed ? check_mark_resumed : check_mark, err);
 }
 
 /* ---- Files of an earlier run ---- */

@@ -14,6 +14,10 @@ bool outputs_check_folders(const Scene *scene, const char *result, Error *err);
  * somebody else's. */
 bool outputs_check_new(const Scene *scene, const char *result, bool picture, Error *err);
 
+/* Are those that are there slender's own, or of kinds that bear no mark (mark.h)? False and a sentence else; of a run that
+ * is resumed it is another one, since --force would discard it. */
+bool outputs_check_marks(const Scene *scene, const char *result, bool picture, bool resumed, Error *err);
+
 /* Removes what the run that left the result has put beside it by its name: the table of probes and drawings, but for files
  * that the scene, which takes its place, is made of. Pictures stay, and files that a scene named. */
 void outputs_remove_old(const Scene *scene, const char *result);

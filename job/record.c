@@ -153,11 +153,9 @@ static Result *open_earlier(const char *path, Error *err)
     return result;
 }
 
-/* A finished result is replaced by one of the same scene, of the same files, only; and files beside it together with it. */
-static bool check_earlier(const Run *run, const char *journal, bool picture, Error *err)
+/* A finished result is replaced by one of the same scene, of the same files, only. */
+static bool check_result(const Run *run, Error *err)
 {
-    if (access(run->result, F_OK) != 0)
-        return access(journal, F_OK) == 0 || outputs_check_new(run->scene, run->result, picture, err);
     Result *result = open_earlier(run->result, err);
     if (!result) return false;
     char *scene = yaml_write(scene_table(), run->scene), *inputs = inputs_text(run->scene, err);
@@ -168,6 +166,34 @@ static bool check_earlier(const Run *run, const char *journal, bool picture, Err
     mem_free(inputs);
     result_close(result);
     return ok;
+}
+
+/* NULL where there is none, or a finished one. */
+static Journal *open_unfinished(const char *path)
+{
+    Journal *journal = access(path, F_OK) == 0 ? journal_open(path, JOURNAL_READ, NULL) : NULL;
+    if (!journal || !journal_is_finished(journal)) return journal;
+    journal_close(journal, NULL);
+    return NULL;
+}
+
+/* Files beside a result go together with it, but none that is not slender's. An unfinished run is left to journal_open, which
+ * says what helps. */
+static bool check_earlier(const Run *run, const char *path, bool picture, Error *err)
+{
+    bool there = access(run->result, F_OK) == 0;
+    if (there && !check_result(run, err)) return false;
+    Journal *unfinished = open_unfinished(path);
+    journal_close(unfinished, NULL);
+    if (unfinished) return true;
+    return outputs_check_marks(run->scene, run->result, picture, false, err) &&
+           (there || access(path, F_OK) == 0 || outputs_check_new(run->scene, run->result, picture, err));
+}
+
+static bool check_before(const Run *run, JournalMode mode, const char *journal, bool picture, Error *err)
+{
+    if (mode == JOURNAL_NEW) return check_earlier(run, journal, picture, err);
+    return mode == JOURNAL_FORCE || outputs_check_marks(run->scene, run->result, picture, true, err);
 }
 
 /* ---- What there is of a run ---- */
@@ -253,8 +279,8 @@ RecordState record_state(const Scene *of, const char *name, Error *err)
     char *path = mem_format("%s.run", name), *file = mem_format("%s.vtkhdf", name),
          *scene = yaml_write(scene_table(), of);
     RecordState state = RECORD_ABSENT;
-    Journal *journal = access(path, F_OK) == 0 ? journal_open(path, JOURNAL_READ, NULL) : NULL;
-    bool unfinished = journal && !journal_is_finished(journal);
+    Journal *journal = open_unfinished(path);
+    bool unfinished = journal != NULL;
     if (unfinished) state = journal_state(journal, of, scene, err);
     journal_close(journal, NULL);
     if (!unfinished && access(file, F_OK) == 0) {
@@ -398,7 +424,7 @@ static RunStatus open_and_run(const RecordDef *def, Run *run, Error *err)
     RunStatus status = RUN_CANNOT_WRITE;
     if (check_output(def->name, run->result, journal, err) &&
         outputs_check(def->scene, def->path, run->result, def->picture, err) &&
-        (def->journal != JOURNAL_NEW || check_earlier(run, journal, def->picture, err)))
+        check_before(run, def->journal, journal, def->picture, err))
         run->journal = journal_open(def->in_memory ? NULL : journal, def->journal, err);
     if (run->journal) {
         if (def->journal == JOURNAL_FORCE) outputs_remove_old(def->scene, run->result);

@@ -201,8 +201,8 @@ static bool write_page(const Document *document, const char *title, const char *
     Text page = {0};
     char *block = document_block(document);
     text_add(&page, "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
-                    "name=\"generator\" content=\"" MARK_TEXT "\">\n<title>");
+                    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" MARK_HTML(
+                        SLENDER_VERSION) "\n<title>");
     text_add_xml(&page, title);
     text_add(&page,
              "</title>\n<style>\n%s</style>\n</head>\n%s\n<script id=\"document\" type=\"application/json\">",

@@ -207,11 +207,18 @@ for other in "output.every=0" "output.svg=it-5.svg" "output.svg=at-000010.svg"; 
 done
 # Without a result they are somebody else's, as other files are; with another one those of the run before go.
 for file in at-000010.svg at.gcode; do
+    [ $file = at.gcode ] && whose="no 'at.vtkhdf'" || whose="slender has not made it"
     cp dot.pgm $file
-    expect 4 "$program" run picture.yaml --quiet --no-picture -o at --set output.every=5 --set output.gcode=at.gcode; says "'$file' is there, and no 'at.vtkhdf'"
+    expect 4 "$program" run picture.yaml --quiet --no-picture -o at --set output.every=5 --set output.gcode=at.gcode; says "'$file' is there, and $whose"
     same $file dot.pgm; rm $file
 done
 expect 0 "$program" run picture.yaml --quiet --no-picture -o at --set output.every=5; exists at-000005.svg
+expect 0 "$program" run picture.yaml --quiet --no-picture -o at --set output.every=5
+for file in at-000010.svg at.svg; do
+    mv $file kept.svg; cp dot.pgm $file
+    expect 4 "$program" run picture.yaml --quiet --no-picture -o at --set output.every=5; says "'$file' is there, and slender has not made it"
+    same $file dot.pgm; mv kept.svg $file
+done
 expect 0 "$program" run picture.yaml --quiet --no-picture -o at --force --set output.svg=other.svg
 for file in at.svg at-*.svg; do [ ! -e "$file" ] || { echo "$file of another run stays"; bad=1; }; done
 expect 2 "$program" run picture.yaml --threads 2x

@@ -517,10 +517,21 @@ class Moving(unittest.TestCase):
                     self.assertEqual(file.read(), "made by hand, slender: 1\n")
                 slender(*words, "--force")
                 slender(*words)
+                for text in ("a slender 3 mm rod", "Computed with slender 1.0", "made by slender 2 mm rods", "slender 0.1.0", "generator slender 1.2.3"):
+                    with open(path, "w") as file:
+                        file.write(f"<!-- # % {text} -->\n")
+                    self.assertIn(f"'{path}' is there, and slender has not made it", slender(*words, code=4))
                 with open(path, "w"):
                     pass
                 slender(*words)
                 self.assertGreater(os.path.getsize(path), 0)
+        for path in ("mine.PNG", "mine.Svg", "mine.pDf", "mine.WebP"):  # of any case
+            words = ("picture", "mine.vtkhdf", "-o", path)
+            with open(path, "w") as file:
+                file.write("by hand")
+            self.assertIn(f"'{path}' is there", slender(*words, code=4))
+            slender(*words, "--force")
+            slender(*words)
         with open("mine.obj", "w") as file:
             file.write("v 0 0 0\n")
         for words in (("mesh", "mine.yaml"), ("export", "mine.vtkhdf", "-o", "mine.obj")):
@@ -534,6 +545,24 @@ class Moving(unittest.TestCase):
         self.assertEqual(int.from_bytes(data[4:8], "little") + 8, len(data))
         self.assertIn(b"XMP ", data)
         slender("picture", "moving.vtkhdf", "-o", "moving.webp", "--seconds", "0.1", "--width", "400")
+
+    def test_unreadable(self):
+        """Nobody knows whose a file is that may not be read."""
+        run("closed", EVALUATE % ("shape: sheet, size: [20 mm, 10 mm], cells: [2, 1]", "1 mm", "[0, 0, 1e4]"))
+        os.mkdir("open")
+        os.chmod("open", 0o777)
+        os.rename("closed.vtkhdf", "open/closed.vtkhdf")
+        with open("open/closed.png", "w") as file:
+            file.write("mine")
+        os.chmod("open/closed.png", 0o200)
+        nobody = {"user": 65534} if os.geteuid() == 0 else {}  # root may read all
+        words = [PROGRAM, "picture", "closed.vtkhdf"]
+        done = subprocess.run(words, cwd="open", capture_output=True, text=True, **nobody)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("'closed.png' is there, and slender has not made it", done.stderr)
+        subprocess.run([*words, "--force"], cwd="open", check=True, capture_output=True, **nobody)
+        with open("open/closed.png", "rb") as file:
+            self.assertIn(b"Software\0slender", file.read()[-2048:])
 
     def test_refusals(self):
         for options, code, words in (

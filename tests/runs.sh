@@ -48,9 +48,10 @@ expect 0 run earlier.yaml -o e --force; same e.vtkhdf e.copy
 # Files beside a result go with it; without one they are somebody else's, unless a journal tells that they are the run's.
 probed="earlier.yaml -o own --set probes.tip.group=tip"
 for file in own.png own_probes.csv own.xdmf; do
+    [ $file = own.png ] && whose="slender has not made it" || whose="no 'own.vtkhdf' that it would belong to"
     echo mine > $file
     # shellcheck disable=SC2086
-    expect 4 "$program" run $probed --quiet; says "'$file' is there, and no 'own.vtkhdf' that it would belong to: give another name, or replace it with --force$"
+    expect 4 "$program" run $probed --quiet; says "'$file' is there, and $whose: give another name, or replace it with --force$"
     is "$file" "$(cat $file)" mine
     [ ! -e own.run ] || { echo "a refused run leaves its journal"; bad=1; }
     rm $file
@@ -61,6 +62,14 @@ echo mine > own.png
     expect 0 run $probed; is "a run without a picture" "$(cat own.png)" mine
     rm own.vtkhdf own.run own_probes.csv own.xdmf
     expect 0 "$program" run $probed --quiet --force; expect 0 "$program" run $probed --quiet; grep -q PNG own.png || { echo "own.png is no picture"; bad=1; }
+    cp own.png ours.png; cp own.run own.journal; echo mine > own.png
+    expect 4 "$program" run $probed --quiet; says "'own.png' is there, and slender has not made it: give another name, or replace it with --force$"
+    expect 4 "$program" run $probed --quiet --resume; says "'own.png' is there, and slender has not made it: move it, then go on with --resume$"
+    is "a picture that is not slender's" "$(cat own.png)" mine; same own.run own.journal
+    expect 0 "$program" run $probed --quiet --force; same own.png ours.png
+    rm own.vtkhdf own.run own_probes.csv own.xdmf
+    expect 4 "$program" run $probed --quiet; says "'own.png' is there, and no 'own.vtkhdf'"; same own.png ours.png
+    expect 0 "$program" run $probed --quiet --force
     rm own.vtkhdf; expect 0 "$program" run $probed --quiet
 }
 expect 0 run earlier.yaml -o own --force; [ ! -e own_probes.csv ] || { echo "the table of probes of another run stays"; bad=1; }

@@ -47,7 +47,7 @@ static void svg_words(void **state)
         "stroke-linejoin=\"round\" style=\"mix-blend-mode:multiply\">\n"
         "<path d=\"M5 5C5 15 5 25 5 35\"/>\n"
         "</g>\n"
-        "<metadata>slender " SLENDER_VERSION "</metadata>\n"
+        "<metadata>made by slender " SLENDER_VERSION "</metadata>\n"
         "</svg>\n");
     assert_string_equal(text, again);
     mem_free(text);

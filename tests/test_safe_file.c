@@ -106,7 +106,7 @@ static void test_tables_and_meshes(void **state)
     assert_true(table_write(PATH, "# x", values, 1, 2, &err));
     expect(PATH, "# x\n1, 2\n");
     assert_true(mesh_file_write_obj(PATH, &mesh, &err));
-    expect(PATH, "# slender " SLENDER_VERSION "\nv 1 2 3\n");
+    expect(PATH, "# made by slender " SLENDER_VERSION "\nv 1 2 3\n");
     assert_false(table_write("no/such/folder.csv", NULL, values, 1, 2, &err));
     assert_string_equal(err.text, "no/such/folder.csv: cannot be written: No such file or directory");
     assert_false(table_write("/dev/null", NULL, values, 1, 2, &err));

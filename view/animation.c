@@ -72,11 +72,10 @@ bool animation_add(Animation *animation, Canvas *page, double seconds, Error *er
 }
 
 /* What it says of who has made it. */
-static const char mark[] =
-    "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF "
-    "xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">"
-    "<rdf:Description xmlns:xmp=\"http://ns.adobe.com/xap/1.0/\" xmp:CreatorTool=\"" MARK_TEXT
-    "\"/></rdf:RDF></x:xmpmeta>";
+static const char mark[] = "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF "
+                           "xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">"
+                           "<rdf:Description xmlns:xmp=\"http://ns.adobe.com/xap/1.0/\" " MARK_WEBP(
+                               SLENDER_VERSION) "/></rdf:RDF></x:xmpmeta>";
 
 /* Source: Adobe XMP 1.2; the WebP container has it as a chunk of its own. */
 static bool add_mark(WebPData *data)

@@ -8,6 +8,8 @@
 
 #define MINUS "\u2212"
 
+enum { DIGITS = 3 }; /* of a number with its unit */
+
 static const char *const superscripts[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                            "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
 
@@ -116,6 +118,15 @@ static UnitScale power_scale(const char *unit, double size)
     return scale;
 }
 
+/* To so many digits, as it will be shown: that decides of the prefix. */
+static double rounded(double number, int digits)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.*e", digits - 1, number);
+    double result = strtod(text, NULL);
+    return isfinite(result) ? result : number;
+}
+
 UnitScale unit_scale(const char *unit, double greatest)
 {
     static const char *const prefixes[] = {"p", "n", "\u00b5", "m", "", "k", "M", "G"};
@@ -123,9 +134,11 @@ UnitScale unit_scale(const char *unit, double greatest)
     unit_text(unit, plain, sizeof plain);
     double size = fabs(greatest);
     if (!(size >= DBL_MIN) || !isfinite(size)) size = 1;
-    int thousands = unit_takes_prefix(unit) ? (int)fmin(fmax(floor(log10(size) / 3 + 1e-9), -4), 3) : 0;
+    double shown = rounded(size, DIGITS), whole = rounded(size, DIGITS + 1); /* thousands have one more */
+    int thousands = unit_takes_prefix(unit) ? (int)fmin(fmax(floor(log10(shown) / 3 + 1e-9), -4), 3) : 0;
     UnitScale scale = {.factor = pow(1000, -thousands)};
-    if (size * scale.factor < 0.01 || size * scale.factor >= 10000) return power_scale(plain, size);
+    if (shown * scale.factor < 0.01 * (1 - 1e-9) || whole * scale.factor >= 10000 * (1 - 1e-9))
+        return power_scale(plain, shown);
     snprintf(scale.unit, sizeof scale.unit, "%s%s", prefixes[thousands + 4], plain);
     return scale;
 }
@@ -138,9 +151,10 @@ void unit_format(double number, const char *unit, char *text, size_t size)
     }
     UnitScale scale = unit_scale(unit, number);
     double shown = number * scale.factor;
+    if (fabs(shown) < 1000) shown = rounded(number, DIGITS) * scale.factor;
     char digits[TICKS_TEXT];
     int whole = shown == 0 ? 1 : (int)floor(log10(fabs(shown)) + 1e-9) + 1;
-    int decimals = whole >= 3 ? 0 : 3 - whole;
+    int decimals = whole >= DIGITS ? 0 : DIGITS - whole;
     number_text(shown, decimals, digits, sizeof digits);
     if (strchr(digits, '.')) { /* 50.0 says no more than 50 here */
         size_t length = strlen(digits);

@@ -54,7 +54,7 @@ const PREFIXED = /^(m|N|T|J|Pa|A\/m|s|Hz|W|N m|V)$/;
 
 /* The unit in which a number of that size is said, with a prefix where it takes one, and how large it is: "mm", 1e-3. */
 function prefixed(size, unit) {
-  const power = 3 * Math.floor(Math.log10(Math.abs(size)) / 3 + 1e-9);
+  const power = 3 * Math.floor(Math.log10(Math.abs(size).toPrecision(3)) / 3 + 1e-9); // of what is said
   return PREFIXED.test(unit) && power in PREFIXES ? { unit: PREFIXES[power] + unit, scale: 10 ** power } : { unit, scale: 1 };
 }
 
